@@ -6,15 +6,14 @@ from __future__ import annotations
 import argparse
 import os
 import re
-import signal
 import sys
 from collections.abc import Sequence
 
 from .. import __version__
 from .._options import RETIRED
-from ..errors import Error, InvalidOption
+from ..errors import InvalidOption
 from .call import FORMATS, batch
-from .exits import CANCELLED, DONE, FAILED, USAGE, Parser, stop
+from .exits import CANCELLED, DONE, FAILED, USAGE, Parser, bytes_of, status_of
 from .options import KNOWN
 from .progress import clock
 
@@ -24,14 +23,13 @@ _EXIT = f"""exit status:
   {USAGE}  an option is wrong
   {CANCELLED}  stopped by Ctrl-C or SIGTERM
 What is done stays: the same command computes the rest."""
-_UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "ki": 2**10, "mi": 2**20, "gi": 2**30}
 
 
 def _bytes(text: str) -> int:
-    found = re.fullmatch(r"([0-9.]+) *([kmg]?i?)b?", text.strip().lower())
-    if found is None or found[2] not in _UNITS or found[1].count(".") > 1 or found[1] == ".":
+    size = bytes_of(text)
+    if size is None:
         raise argparse.ArgumentTypeError(f"'{text}' is no size as 500M or 4G")
-    return round(float(found[1]) * _UNITS[found[2]])
+    return size
 
 
 def _share(text: str) -> tuple[int, int]:
@@ -60,8 +58,6 @@ def _parser() -> argparse.ArgumentParser:
         usage="scaleaxis-batch MODEL... -o OUT [OPTION...]\n       scaleaxis-batch volume VOLUME -o OUT [OPTION...]",
         description="Axes of many models, on this machine, on Dask, or in shards.",
         epilog=_EXIT,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("models", nargs="+", metavar="MODEL", help="file, folder, glob, or table (.csv, .parquet) with a column 'path'")
@@ -97,12 +93,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return volume_main(words[1:])
     given = vars(_parser().parse_args(words))
     options = {name.removeprefix("axis:"): value for name, value in given.items() if name.startswith("axis:")}
-    before = signal.signal(signal.SIGTERM, stop)  # Slurm's at the end of the time of a job
-    try:
+
+    def work() -> int:
         shard = given["shard"]
         if shard == ():
             shard = _share_of_slurm()
-        is_shown = False if given["quiet"] else None
         counts = batch(
             given["models"],
             given["output"],
@@ -114,17 +109,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
             time_limit=given["time_limit"],
             memory_limit=given["memory_limit"],
             retry=given["retry"],
-            progress=is_shown,
+            progress=False if given["quiet"] else None,
             **options,
         )
-    except KeyboardInterrupt:
-        print("scaleaxis-batch: stopped: the same command goes on", file=sys.stderr)
-        return CANCELLED
-    except (Error, OSError) as error:
-        print(f"scaleaxis-batch: {error}", file=sys.stderr)
-        return USAGE if isinstance(error, InvalidOption) else FAILED
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    if not given["quiet"]:
-        print(f"{counts.total} models: {counts}, {clock(counts.seconds)}")
-    return FAILED if counts.failed or counts.lost else DONE
+        if not given["quiet"]:
+            print(f"{counts.total} models: {counts}, {clock(counts.seconds)}")
+        return FAILED if counts.failed or counts.lost else DONE
+
+    return status_of("scaleaxis-batch", work)

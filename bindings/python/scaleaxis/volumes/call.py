@@ -9,7 +9,6 @@ import io
 import json
 import math
 import os
-import re
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from typing import Any
 
 from .. import _core
 from ..batch.call import _storage as storage_of
+from ..batch.exits import bytes_of
 from ..batch.progress import Counts, Progress, told
 from ..batch.runners import dask_client, in_threads, on_dask, processors
 from ..batch.storage import Storage
@@ -35,7 +35,6 @@ from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
 from .worker import Row, compute, known_row, stop_all
 
-_UNITS = {"": 1, "k": 10**3, "m": 10**6, "g": 10**9, "ki": 2**10, "mi": 2**20, "gi": 2**30}
 _FIRST_MOVE = 1e-4  # as the perturbation of `medial_axis`; doubled for all blocks if one of them contradicts itself
 _MOVES = 4
 _INCONSISTENT = "result"  # the code of InconsistentResult
@@ -69,14 +68,12 @@ class Report:
         return None if self.euler is None else self.euler == self.solid_euler
 
 
-def bytes_of(text: str | int) -> int:
+def memory_of(memory: str | int) -> int:
     """Of 4GB, 500M or a number. Raises InvalidOption."""
-    if isinstance(text, int):
-        return text
-    found = re.fullmatch(r"(\d+(?:\.\d+)?) *([kmg]?i?)b?", text.strip().lower())
-    if found is None or found[2] not in _UNITS:
-        raise InvalidOption(f"memory must be a size as '4GB', not {text!r}")
-    return round(float(found[1]) * _UNITS[found[2]])
+    size = memory if isinstance(memory, int) else bytes_of(memory)
+    if size is None:
+        raise InvalidOption(f"memory must be a size as '4GB', not {memory!r}")
+    return size
 
 
 def _key(kind: str, source: Source, low: Any, *told: Any) -> str:
@@ -304,7 +301,7 @@ def volume(
         else source_of(source, labels=labels, level=level, below=below, dataset=dataset, spacing=spacing)
     )
     storage = storage_of(output, storage_options)
-    share = bytes_of(memory) // at_a_time
+    share = memory_of(memory) // at_a_time
     threads = max(1, processors() // at_a_time) if scheduler is None else 1
     runs = _Runs(storage, scheduler, at_a_time, progress)
 
@@ -385,4 +382,4 @@ def volume(
     return report
 
 
-__all__ = ["Report", "bytes_of", "volume"]
+__all__ = ["Report", "memory_of", "volume"]

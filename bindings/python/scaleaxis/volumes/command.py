@@ -4,12 +4,9 @@
 from __future__ import annotations
 
 import argparse
-import signal
-import sys
 from collections.abc import Sequence
 
-from ..batch.exits import CANCELLED, DONE, FAILED, USAGE, Parser, stop
-from ..errors import Error, InvalidOption
+from ..batch.exits import CANCELLED, DONE, FAILED, USAGE, Parser, status_of
 from .call import volume
 
 _EXIT = f"""exit status:
@@ -33,8 +30,6 @@ def _parser() -> argparse.ArgumentParser:
         usage="scaleaxis-batch volume VOLUME -o OUT [OPTION...]",
         description="Axis and thickness of a volume larger than memory, block by block.",
         epilog=_EXIT,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        allow_abbrev=False,
     )
     add = parser.add_argument
     add("source", metavar="VOLUME", help=".npy, Zarr, OME-Zarr, N5, NRRD, NIfTI, or Neuroglancer precomputed")
@@ -64,21 +59,15 @@ def main(arguments: Sequence[str]) -> int:
     """Runs the command; returns its exit status."""
     given = vars(_parser().parse_args(arguments))
     is_quiet = given.pop("quiet")
-    before = signal.signal(signal.SIGTERM, stop)
-    try:
+
+    def work() -> int:
         report = volume(**given, progress=False if is_quiet else None)
-    except KeyboardInterrupt:
-        print("scaleaxis-batch volume: stopped: the same command goes on", file=sys.stderr)
-        return CANCELLED
-    except (Error, OSError) as error:
-        print(f"scaleaxis-batch volume: {error}", file=sys.stderr)
-        return USAGE if isinstance(error, InvalidOption) else FAILED
-    finally:
-        signal.signal(signal.SIGTERM, before)
-    if not is_quiet:
-        print(f"{report.blocks} blocks of {report.block} voxels, {report.computed} parts computed")
-        if report.euler is not None:
-            print(f"{report.faces} faces; Euler characteristic {report.euler}, of the solid {report.solid_euler}")
-            for low, much in report.mismatches.items():
-                print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}")
-    return DONE
+        if not is_quiet:
+            print(f"{report.blocks} blocks of {report.block} voxels, {report.computed} parts computed")
+            if report.euler is not None:
+                print(f"{report.faces} faces; Euler characteristic {report.euler}, of the solid {report.solid_euler}")
+                for low, much in report.mismatches.items():
+                    print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}")
+        return DONE
+
+    return status_of("scaleaxis-batch volume", work)
