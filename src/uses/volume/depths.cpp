@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 #include <limits>
 
 #include "base/parallel.hpp"
@@ -146,6 +147,8 @@ std::vector<float> thickness_of_block(const VolumeBlock& block, std::span<const 
                         }
                     }
                 }
+                // Planes farther off see none after the first that is too small for them.
+                std::ranges::stable_sort(centers[k], std::greater<>(), &Center::depth);
             },
             Index{1});
         const std::array<Index, 3> sizes{high[0] - low[0], high[1] - low[1], high[2] - low[2]};
@@ -159,7 +162,7 @@ std::vector<float> thickness_of_block(const VolumeBlock& block, std::span<const 
                     for (const auto& [i, j, depth] : centers[k]) {
                         const std::int64_t in_plane = depth - dz * dz;
                         if (in_plane <= 0) {
-                            continue;
+                            break;
                         }
                         const auto reach = static_cast<Index>(std::sqrt(static_cast<double>(in_plane)));
                         for (Index y = std::max(j - reach, low[1]); y <= std::min(j + reach, high[1] - 1); ++y) {
