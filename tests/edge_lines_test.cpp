@@ -41,15 +41,6 @@ Polygon wedge(double angle) {
     return {{0, 0}, {1, -half}, {1, half}};
 }
 
-Similarity random_turn(Random& random) {
-    Similarity result;
-    auto& [x, y, z] = result.rotation;
-    x = random_direction(random);
-    y = unit(cross(x, random_direction(random)));
-    z = cross(x, y);
-    return result;
-}
-
 std::vector<EdgeLine> lines_of(const TriangleMesh& mesh, double angle = 30.0) {
     return edge_lines(mesh_solid(mesh)->sharp_edges(angle).value());
 }

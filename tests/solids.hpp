@@ -22,6 +22,7 @@
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/scale_axis.hpp"
 #include "scaleaxis/solid.hpp"
+#include "unions.hpp"
 
 namespace scaleaxis {
 
@@ -389,6 +390,15 @@ struct Similarity {
         return q.x * rotation[0] + q.y * rotation[1] + q.z * rotation[2];
     }
 };
+
+inline Similarity random_turn(Random& random) {
+    Similarity result;
+    auto& [x, y, z] = result.rotation;
+    x = random_direction(random);
+    y = unit(cross(x, random_direction(random)));
+    z = cross(x, y);
+    return result;
+}
 
 /// By `angle` radians about an axis that is parallel to nothing.
 inline Similarity turn(double angle) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
@@ -34,35 +35,31 @@ struct Sliver {
 
 // The smallest first, so that the numbers of sheets do not matter.
 std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
-    std::vector<double> areas(complex.sheets);
-    std::vector<double> perimeters(complex.sheets);
-    std::vector<double> least_radii(complex.sheets, std::numeric_limits<double>::infinity());
     const IndexLists faces_of = faces_of_sheets(complex);
-    std::vector<std::uint8_t> is_inside(complex.edges.size());
-    for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
-        for (const Index f : faces_of[sheet]) {
-            areas[sheet] += face_area(complex, f);
-            for (const Index v : complex.faces[f]) {
-                least_radii[sheet] = std::min(least_radii[sheet], complex.radii[v]);
-            }
-            for (const Index e : complex.face_edges[f]) {
-                const double length =
-                    distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
-                perimeters[sheet] += is_inside[e] == 0 ? length : -length;
-                is_inside[e] ^= 1;
-            }
-        }
-        for (const Index f : faces_of[sheet]) {
-            for (const Index e : complex.face_edges[f]) {
-                is_inside[e] = 0;
-            }
-        }
-    }
+    std::vector<std::uint8_t> is_outer(complex.edges.size());
     std::vector<Sliver> slivers;
     for (Index sheet = 0; sheet < complex.sheets; ++sheet) {
-        const double most = std::min(kMostWidth * tolerance, kMostOfRadius * least_radii[sheet]);
-        if (2.0 * areas[sheet] < most * perimeters[sheet]) {
-            slivers.push_back({areas[sheet], sheet, most});
+        double area = 0.0;
+        for (const Index f : faces_of[sheet]) {
+            area += face_area(complex, f);
+            std::ranges::for_each(complex.face_edges[f], [&](Index e) { is_outer[e] ^= 1; });
+        }
+        // Along the outline, for the radii at its ends can differ much.
+        double perimeter = 0.0;
+        double most = 0.0;
+        for (const Index f : faces_of[sheet]) {
+            for (const Index e : complex.face_edges[f]) {
+                if (std::exchange(is_outer[e], 0) != 0) {
+                    const auto& [p, q] = complex.edges[e];
+                    const double length = distance(complex.vertices[p], complex.vertices[q]);
+                    const double radius = 0.5 * (complex.radii[p] + complex.radii[q]);
+                    perimeter += length;
+                    most += length * std::min(kMostWidth * tolerance, kMostOfRadius * radius);
+                }
+            }
+        }
+        if (2.0 * area < most) {
+            slivers.push_back({area, sheet, most / perimeter});
         }
     }
     std::ranges::stable_sort(slivers, {}, &Sliver::area);
@@ -149,9 +146,11 @@ class Contraction {
     }
 
     // Contracts the edges of some faces that are shorter than `size_of(an end, the other end)`, the shortest first.
+    // Returns whether there was one.
     template <class SizeOf>
-    void contract(std::span<const Index> faces, const SizeOf& size_of) {
-        for (bool is_changed = true; is_changed;) {
+    bool contract(std::span<const Index> faces, const SizeOf& size_of) {
+        bool is_any_changed = false;
+        for (bool is_changed = true; is_changed; is_any_changed |= is_changed) {
             is_changed = false;
             std::vector<std::pair<double, std::array<Index, 2>>> edges;
             for (const Index f : faces) {
@@ -174,6 +173,22 @@ class Contraction {
                 }
             }
         }
+        return is_any_changed;
+    }
+
+    // The triangles at the vertices of some faces, if any is left, that are less high than `height`.
+    std::vector<Index> faces_at(std::span<const Index> faces, double height) const {
+        std::vector<Index> result;
+        for (const Index f : faces) {
+            for (const Index v : corners_of(f)) {
+                std::ranges::copy_if(star(v), std::back_inserter(result), [&](Index cell) {
+                    return sizes_[cell] == 3 && height_of(corners_of(cell)) < height;
+                });
+            }
+        }
+        std::ranges::sort(result);
+        result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
     }
 
     MedialComplex result() && {
@@ -199,6 +214,13 @@ class Contraction {
    private:
     std::span<const Index> corners_of(Index cell) const {
         return cells_[cell].first(static_cast<std::size_t>(sizes_[cell]));
+    }
+
+    double height_of(std::span<const Index> corners) const {
+        const auto& [a, b, c] =
+            std::array{complex_.vertices[corners[0]], complex_.vertices[corners[1]], complex_.vertices[corners[2]]};
+        const double longest = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
+        return longest > 0.0 ? norm(cross(b - a, c - a)) / std::sqrt(longest) : 0.0;
     }
 
     void erase_corner(Index cell, Index v) {
@@ -366,10 +388,19 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     complex = with_triangles_at(vertices_of_slivers(slivers, complex), complex);
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
-    for (const Sliver& sliver : slivers) {
-        // Across first; where that would change the homotopy type, along.
-        for (const double longest : {1.0, kMostEdge}) {
-            contraction.contract(faces_of[sliver.sheet], [&](Index, Index) { return longest * sliver.width; });
+    for (bool is_changed = true; is_changed;) {  // what one leaves behind, others may free
+        is_changed = false;
+        for (const Sliver& sliver : slivers) {
+            // Across first; where that would change the homotopy type, along. Other sheets may stand in the way, with
+            // edges as short, or with triangles as flat as a folded seam makes them.
+            constexpr double kAny = std::numeric_limits<double>::infinity();
+            const std::span<const Index> faces = faces_of[sliver.sheet];
+            for (const auto& [length, height] :
+                 {std::pair(sliver.width, kAny), std::pair(kMostEdge * sliver.width, sliver.width / kMostEdge)}) {
+                const auto size_of = [size = length](Index, Index) { return size; };
+                is_changed |= contraction.contract(faces, size_of);
+                is_changed |= contraction.contract(contraction.faces_at(faces, height), size_of);
+            }
         }
     }
     return std::move(contraction).result();
