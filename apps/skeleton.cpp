@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis skeleton: solid, or stored axis → curve skeleton.
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -18,8 +19,10 @@
 #include "outputs.hpp"
 #include "page.hpp"
 #include "readable.hpp"
+#include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/report.hpp"
@@ -57,6 +60,9 @@ struct CurveOptions {
     double significance = SkeletonOptions().significance;
     SkeletonRadius radius = SkeletonRadius::kInscribed;
     bool leads_to_openings = false;
+    std::vector<std::array<double, 3>> path;  ///< its ends; empty: all curves
+    std::optional<Length> step;
+    bool has_sections = false;
     CommonOptions common;
 };
 
@@ -77,13 +83,26 @@ SkeletonOptions skeleton_options(const CurveOptions& options, double diagonal) {
 /// Options that say how an axis is computed have no effect on one that is stored.
 bool has_axis_options(const CurveOptions& options) {
     return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty() ||
-           options.leads_to_openings;
+           options.leads_to_openings || options.has_sections;
+}
+
+/// The path between two places, even steps.
+Skeleton derived(Skeleton skeleton, const CurveOptions& options, double diagonal) {
+    if (!options.path.empty()) {
+        const auto place = [&](std::size_t i) {
+            const auto& [x, y, z] = options.path[i];
+            return Point{x, y, z};
+        };
+        skeleton = path_between(skeleton, place(0), place(1));
+    }
+    return options.step ? resampled(skeleton, options.step->of(diagonal)) : skeleton;
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, const Listener& listener) {
     if (has_axis_options(options)) {
         throw InvalidOption(options.input.string() +
-                            " is an axis: --delta, --clean, --sampling, --parts and --to-openings are for solids");
+                            " is an axis: --delta, --clean, --sampling, --parts, --to-openings and --sections are for "
+                            "solids");
     }
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundSkeleton outcome;
@@ -93,9 +112,9 @@ FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, 
         listener.warn(options.input, warning);
     }
     outcome.costs.push_back(watch.lap("reading"));
-    outcome.skeleton =
-        skeleton(outcome.complex, skeleton_options(options, report_of(outcome.complex).bounds.diagonal()),
-                 listener.execution({}));
+    const double diagonal = report_of(outcome.complex).bounds.diagonal();
+    outcome.skeleton = derived(skeleton(outcome.complex, skeleton_options(options, diagonal), listener.execution({})),
+                               options, diagonal);
     outcome.costs.push_back(watch.lap("skeleton"));
     return outcome;
 }
@@ -140,7 +159,13 @@ FoundSkeleton of_solid(const CurveOptions& options, const Source& source, const 
         const double spacing = curve_options.spacing > 0.0 ? curve_options.spacing : kNodeSpacing * axis.diagonal;
         outcome.skeleton = led_to_openings(std::move(outcome.skeleton), mesh->holes, spacing);
     }
+    outcome.skeleton = derived(std::move(outcome.skeleton), options, axis.diagonal);
     outcome.costs.push_back(watch.lap("skeleton"));
+    if (options.has_sections) {
+        const Execution all = execution(1.0, 1.0);
+        add_sections(outcome.skeleton, input.solid ? *input.solid : *union_solid(axis.balls, all), all);
+        outcome.costs.push_back(watch.lap("sections"));
+    }
     if (has_surface) {
         outcome.surface = input.mesh.triangles.empty() ? boundary_mesh(*axis.kept_samples).mesh : std::move(input.mesh);
     }
@@ -192,7 +217,10 @@ SourceResult run_source(const CurveOptions& options, const Source& source, const
     warn_of_sheets(statistics, source.name, listener);
     stop_if_requested(cancel);
     Stopwatch watch;
-    write_skeleton(files.skeleton, outcome.skeleton, written_format(files.skeleton, options.output_format, "swc"));
+    for (const Diagnostic& warning : write_skeleton(files.skeleton, outcome.skeleton,
+                                                    written_format(files.skeleton, options.output_format, "swc"))) {
+        listener.warn(source.name, warning);
+    }
     if (!files.parts.empty()) {
         write_parts(files.parts, outcome.surface, outcome.skeleton,
                     nearest_nodes(outcome.skeleton, outcome.complex, outcome.surface.vertices, listener.execution({})),
@@ -225,6 +253,9 @@ SourceResult run_source(const CurveOptions& options, const Source& source, const
 }
 
 Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
+    if (!options.path.empty() && !options.parts.empty()) {
+        throw InvalidOption("--parts needs all branches, and --path leaves out most: ask for one of them");
+    }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
     std::vector<fs::path> outputs;
     std::vector<SkeletonFiles> files;
@@ -250,7 +281,7 @@ Command skeleton_command(CommandLine program) {
                     "none with --implicit")
         .value_text(" ");
     add_output_option(command, options->output, options->output_format,
-                      "Skeleton: .swc, .graphml, .json, .vtp or .ply; a folder gets {name}-skeleton.swc;\n"
+                      "Skeleton: .swc, .graphml, .json, .vtp, .csv or .ply; a folder gets {name}-skeleton.swc;\n"
                       "{name} and {scale} are filled in");
     command
         .add_option("--parts", options->parts,
@@ -277,6 +308,17 @@ Command skeleton_command(CommandLine program) {
     command.add_flag("--to-openings", options->leads_to_openings,
                      "Lead curves on to the middles of the holes of an open surface, which are closed, as of vessels\n"
                      "that are cut: by themselves they end a radius before");
+    command
+        .add_option("--path", options->path,
+                    "Only the shortest way along the curves between the nodes nearest to two places")
+        .delimiter(',')
+        .expected(2)
+        .value_text("X,Y,Z X,Y,Z");
+    add_length_options(command, "--step", options->step, kSpacingRange,
+                       "Even steps: nodes are moved along their branches to equal distances of at most this;\n"
+                       "relative to the diagonal [1e-06 ... 1]");
+    command.add_flag("--sections", options->has_sections,
+                     "Area and widths of the solid's cross-section at each node, in VTP and JSON");
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     add_sampling_option(command, options->pipeline.sizing);
     const Option scale =
@@ -291,11 +333,15 @@ Command skeleton_command(CommandLine program) {
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(
-        "Loops of the solid stay loops; SWC files have trees, and say in a comment where a loop was cut.\n"
+        "VTP has a line for each branch, with VMTK's arrays. Loops of the solid stay loops, but SWC and CSV "
+        "(cylinders, as\n"
+        "TreeQSM has them) have trees: a warning, and in SWC comments, say where a loop was cut.\n"
         "Examples:\n"
         "  scaleaxis skeleton vessels.nii.gz --label 1 -o vessels.swc\n"
         "  scaleaxis skeleton neurons.nrrd --each-label -o swc/\n"
         "  scaleaxis skeleton octopus.off -o octopus.vtp --parts octopus-parts.ply --view octopus.html\n"
+        "  scaleaxis skeleton aorta.stl --to-openings --sections --step-abs 0.5 -o aorta.vtp\n"
+        "  scaleaxis skeleton aorta.stl --path 223,170,24 215,101,28 -o path.vtp\n"
         "  scaleaxis skeleton hand-axis.ply --significance 2 -o hand.graphml");
     return {command, [options, scale](const std::stop_token& cancel) {
                 options->has_scale = scale.count() > 0;

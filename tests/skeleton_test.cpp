@@ -14,9 +14,11 @@
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
+#include <set>
 #include <span>
 #include <sstream>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -460,7 +462,7 @@ Swc read_swc(const std::filesystem::path& file) {
         result.parents.push_back(parent);
         EXPECT_EQ(id, static_cast<int>(result.balls.size()));
         EXPECT_TRUE(parent == -1 || (parent > 0 && parent < id));
-        EXPECT_TRUE(type == 0 || type == 5 || type == 6);
+        EXPECT_EQ(type, 0) << "NEURON cuts sections where the type changes";
     }
     return result;
 }
@@ -566,25 +568,50 @@ TEST_F(SkeletonFiles, VtpHoldsNodesBranchesAndFaces) {
     const pugi::xml_node file = document.child("VTKFile");
     EXPECT_STREQ(file.attribute("type").value(), "PolyData");
     const pugi::xml_node piece = file.child("PolyData").child("Piece");
-    EXPECT_EQ(piece.attribute("NumberOfPoints").as_uint(), expected.nodes.size());
+    // Nodes, and a second point where the loop closes: lines share no points.
+    const std::size_t count = expected.nodes.size();
+    EXPECT_EQ(piece.attribute("NumberOfPoints").as_uint(), count + 1);
     EXPECT_EQ(piece.attribute("NumberOfVerts").as_uint(), 1u);
     EXPECT_EQ(piece.attribute("NumberOfLines").as_uint(), expected.branches.size());
     EXPECT_EQ(piece.attribute("NumberOfPolys").as_uint(), expected.faces.size());
 
-    EXPECT_EQ(vtk_array(piece.child("Points"), "Points", "Float64"), coordinates_of(expected.nodes));
-    EXPECT_EQ(piece.child("Points").child("DataArray").attribute("NumberOfComponents").as_int(), 3);
     const pugi::xml_node nodes = piece.child("PointData");
+    const std::vector<double> node = vtk_array(nodes, "node", "Int32");
+    ASSERT_EQ(node.size(), count + 1);
+    const auto at_points = [&](const auto& values) {
+        std::vector<std::decay_t<decltype(values[0])>> result;
+        for (const double n : node) {
+            result.push_back(values[static_cast<std::size_t>(n)]);
+        }
+        return result;
+    };
+    for (std::size_t n = 0; n < count; ++n) {
+        EXPECT_EQ(node[n], static_cast<double>(n));
+    }
+    EXPECT_EQ(vtk_array(piece.child("Points"), "Points", "Float64"), coordinates_of(at_points(expected.nodes)));
+    EXPECT_EQ(piece.child("Points").child("DataArray").attribute("NumberOfComponents").as_int(), 3);
     const std::vector<Index> degree = degrees(expected);
-    EXPECT_EQ(vtk_array(nodes, "radius", "Float64"), expected.radii);
-    EXPECT_EQ(vtk_array(nodes, "degree", "Int32"), as_doubles(degree));
-    EXPECT_EQ(vtk_array(nodes, "branch", "Int32"), as_doubles(expected.node_branches));
-    EXPECT_EQ(vtk_array(nodes, "component", "Int32"), as_doubles(expected.node_components));
+    EXPECT_EQ(vtk_array(nodes, "radius", "Float64"), at_points(expected.radii));
+    EXPECT_EQ(vtk_array(nodes, "MaximumInscribedSphereRadius", "Float64"), at_points(expected.radii));
+    EXPECT_EQ(vtk_array(nodes, "degree", "Int32"), as_doubles(at_points(degree)));
+    EXPECT_EQ(vtk_array(nodes, "branch", "Int32"), as_doubles(at_points(expected.node_branches)));
+    EXPECT_EQ(vtk_array(nodes, "component", "Int32"), as_doubles(at_points(expected.node_components)));
 
     const double single = static_cast<double>(std::ranges::find(degree, 0) - degree.begin());
     EXPECT_EQ(vtk_array(piece.child("Verts"), "connectivity", "Int32"), std::vector{single});
     EXPECT_EQ(vtk_array(piece.child("Verts"), "offsets", "Int32"), std::vector{1.0});
     for (const auto& [name, lists] : {std::pair("Lines", &expected.branches), std::pair("Polys", &expected.faces)}) {
-        EXPECT_EQ(vtk_array(piece.child(name), "connectivity", "Int32"), as_doubles(lists->items));
+        std::vector<double> corners = vtk_array(piece.child(name), "connectivity", "Int32");
+        EXPECT_EQ(std::set<double>(corners.begin(), corners.end()).size() == corners.size(),
+                  lists == &expected.branches);
+        std::ranges::transform(corners, corners.begin(), [&](double c) { return node[static_cast<std::size_t>(c)]; });
+        for (std::size_t i = 0; i < lists->size(); ++i) {  // the tree's root may be at the other end of a line
+            const std::span<const Index> list = (*lists)[i];
+            const auto first = corners.begin() + lists->offsets[i];
+            const std::vector<double> line(first, first + static_cast<std::ptrdiff_t>(list.size()));
+            EXPECT_TRUE(std::ranges::equal(line, list) ||
+                        std::equal(line.begin(), line.end(), list.rbegin(), list.rend()));
+        }
         EXPECT_EQ(vtk_array(piece.child(name), "offsets", "Int32"),
                   std::vector<double>(lists->offsets.begin() + 1, lists->offsets.end()));
     }
@@ -600,6 +627,13 @@ TEST_F(SkeletonFiles, VtpHoldsNodesBranchesAndFaces) {
     length_of_cell.resize(branch_of_cell.size(), 0.0);
     EXPECT_EQ(vtk_array(piece.child("CellData"), "branch", "Int32"), branch_of_cell);
     EXPECT_EQ(vtk_array(piece.child("CellData"), "length", "Float64"), length_of_cell);
+    EXPECT_EQ(vtk_array(piece.child("CellData"), "Length", "Float64"), length_of_cell);
+    EXPECT_EQ(vtk_array(piece.child("CellData"), "GroupIds", "Int32"), branch_of_cell);
+    const std::vector<double> blanking = vtk_array(piece.child("CellData"), "Blanking", "Int32");
+    ASSERT_EQ(blanking.size(), branch_of_cell.size());
+    for (std::size_t c = 0; c < blanking.size(); ++c) {
+        EXPECT_EQ(blanking[c], branch_of_cell[c] < 0 ? 1.0 : 0.0);
+    }
 }
 
 std::string kind_of(Index degree) {

@@ -199,10 +199,11 @@ SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const Triang
 SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file, std::string_view format = {});  ///< as above
 
 /// A curve skeleton to SWC (a tree for each component; loops are cut, with a comment that says where), GraphML, JSON,
-/// VTP (polylines) or PLY (an axis).
+/// VTP (a polyline for each branch, with VMTK's arrays), CSV (`cylinders`) or PLY (an axis). \returns what the format
+/// loses, see `tree_warnings`
 /// \throws FileError
-SCALEAXIS_EXPORT void write_skeleton(const std::filesystem::path& file, const Skeleton& skeleton,
-                                     std::string_view format = {});
+SCALEAXIS_EXPORT std::vector<Diagnostic> write_skeleton(const std::filesystem::path& file, const Skeleton& skeleton,
+                                                        std::string_view format = {});
 SCALEAXIS_EXPORT void check_skeleton_output(const std::filesystem::path& file,
                                             std::string_view format = {});  ///< as above
 

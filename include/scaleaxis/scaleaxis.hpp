@@ -6,6 +6,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
 #include "scaleaxis/centering.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/crust.hpp"

@@ -36,6 +36,14 @@ struct SkeletonOptions {
     SkeletonRadius radius = SkeletonRadius::kInscribed;
 };
 
+/// A cross-section of a solid.
+struct Section {
+    double area = 0.0;
+    double least_width = 0.0;    ///< of the chords through the node
+    double largest_width = 0.0;  ///< the same
+    bool is_closed = false;      ///< false: the plane runs on into other parts of the solid, as at junctions
+};
+
 /// A curve skeleton: nodes with radii, edges between them, and the branches that they form.
 struct Skeleton {
     std::vector<Point> nodes;                 ///< #N
@@ -52,6 +60,7 @@ struct Skeleton {
 
     /// #V of the complex: the node that each of its vertices has shrunk to.
     std::vector<Index> vertex_nodes;
+    std::vector<Section> sections;  ///< #N, or empty; see `add_sections` in centerlines.hpp
 };
 
 /// The number of edges at each node.

@@ -124,7 +124,8 @@ WriteImage write_nrrd_image;
 WriteImage write_nifti_image;  // version 1, in one file
 
 using WriteSkeleton = void(OutputFile& out, const Skeleton& skeleton);
-WriteSkeleton write_swc_skeleton, write_graphml_skeleton, write_json_skeleton, write_ply_skeleton, write_vtp_skeleton;
+WriteSkeleton write_swc_skeleton, write_csv_skeleton, write_graphml_skeleton, write_json_skeleton, write_ply_skeleton,
+    write_vtp_skeleton;
 
 /// \param has_middles whether triangles have vertices in the middle of their sides
 using WriteShells = void(OutputFile& out, const ShellMesh& shells, bool has_middles);

@@ -24,6 +24,7 @@
 #include "io/output_file.hpp"
 #include "io/text_reader.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/cloud.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -148,7 +149,10 @@ constexpr std::array kFormats{
     points(".xyz", is_point_text, read_point_text),
     points(".pts", is_point_text, read_point_text),
     points(".pwn", is_point_text, read_point_text),
-    points(".csv", is_point_table, read_point_table),
+    Format{.extension = ".csv",
+           .is_content = is_point_table,
+           .read_points = read_point_table,
+           .write_skeleton = write_csv_skeleton},
     points(".tsv", is_point_table, read_point_table),
     points(".pcd", is_pcd, read_pcd_points),
     Format{.extension = ".vtp",
@@ -609,8 +613,11 @@ void write_image(const path& file, const Image& image, std::string_view format) 
     write(file, format, &Format::write_image, image);
 }
 
-void write_skeleton(const path& file, const Skeleton& skeleton, std::string_view format) {
+std::vector<Diagnostic> write_skeleton(const path& file, const Skeleton& skeleton, std::string_view format) {
     write(file, format, &Format::write_skeleton, skeleton);
+    const WriteSkeleton* writer = select_output(file, format, &Format::write_skeleton).write_skeleton;
+    const bool has_trees = writer == write_swc_skeleton || writer == write_csv_skeleton;
+    return has_trees ? tree_warnings(skeleton) : std::vector<Diagnostic>();
 }
 
 void write_parts(const path& file, const TriangleMesh& surface, const Skeleton& skeleton, std::span<const Index> nodes,

@@ -1,59 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // Skeletons as SWC (R. Cannon, D. Turner, G. Pyapali, H. Wheal, "An on-line archive of reconstructed hippocampal
-// neurons", 1998), as GraphML (U. Brandes et al., "GraphML progress report", 2001) and as JSON.
+// neurons", 1998), as cylinders, as GraphML (U. Brandes et al., "GraphML progress report", 2001) and as JSON.
 #include <algorithm>
 #include <array>
 #include <span>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "base/formats/json.hpp"
-#include "base/grouped.hpp"
 #include "io/formats.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
 namespace {
 
-// Types of SWC nodes.
+// The type of all SWC nodes: undefined. NEURON cuts a section wherever the type changes, so forks and ends have no
+// other.
 constexpr int kUndefined = 0;
-constexpr int kFork = 5;
-constexpr int kEnd = 6;
-
-int swc_type(Index degree, Index branches) { return branches > 2 ? kFork : degree == 1 ? kEnd : kUndefined; }
-
-// The node of each component that its tree grows from: the thickest end, or if it has none the thickest node.
-std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& degree) {
-    std::vector<Index> roots;
-    const auto is_better = [&](Index a, Index b) {
-        const auto key = [&](Index n) { return std::pair(degree[n] == 1, skeleton.radii[n]); };
-        return key(a) > key(b);
-    };
-    for (Index n = 0; n < static_cast<Index>(skeleton.nodes.size()); ++n) {
-        const Index component = skeleton.node_components[n];
-        if (component == static_cast<Index>(roots.size())) {
-            roots.push_back(n);
-        } else if (is_better(n, roots[component])) {
-            roots[component] = n;
-        }
-    }
-    return roots;
-}
-
-std::vector<std::array<Index, 2>> edges_of_branches(const Skeleton& skeleton) {
-    std::vector<std::array<Index, 2>> edges;
-    for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
-        const std::span<const Index> branch = skeleton.branches[b];
-        for (std::size_t k = 1; k < branch.size(); ++k) {
-            edges.push_back({std::min(branch[k - 1], branch[k]), std::max(branch[k - 1], branch[k])});
-        }
-    }
-    std::ranges::sort(edges);
-    std::vector<std::array<Index, 2>> result = skeleton.edges;
-    std::erase_if(result, [&](const auto& edge) { return !std::ranges::binary_search(edges, edge); });
-    return result;
-}
 
 std::string_view kind_of(Index degree) {
     return degree == 0 ? "single" : degree == 1 ? "end" : degree == 2 ? "inner" : "junction";
@@ -64,49 +28,35 @@ std::string_view kind_of(Index degree) {
 /// One tree for each component. Loops are cut, each at one edge, which a comment names. Sheets around voids, which are
 /// no trees, are left out with a comment, and a component may have several trees then.
 void write_swc_skeleton(OutputFile& out, const Skeleton& skeleton) {
-    const std::vector<Index> degree = degrees(skeleton);
-    const std::vector<Index> branch_degree = branch_degrees(skeleton);
-    const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), edges_of_branches(skeleton));
-    out.text("# curve skeleton, one tree for each component\n# id type x y z radius parent\n",
-             "# types: 0 inner node, 5 junction, 6 end\n");
-    std::vector<Index> numbers(skeleton.nodes.size());  // from 1 on; 0: not yet
-    std::vector<std::array<Index, 2>> cuts;
-    Index count = 0;
-    std::vector<Index> roots = roots_of(skeleton, degree);
-    if (!skeleton.faces.empty()) {
-        for (Index node = 0; node < static_cast<Index>(skeleton.nodes.size()); ++node) {
-            roots.push_back(node);
-        }
+    const SkeletonTree tree = tree_of(skeleton);
+    std::vector<std::size_t> numbers(skeleton.nodes.size());
+    out.text("# curve skeleton, one tree for each component\n# id type x y z radius parent\n");
+    for (std::size_t i = 0; i < tree.nodes.size(); ++i) {
+        const Index node = tree.nodes[i];
+        const Point& p = skeleton.nodes[node];
+        const Index parent = tree.parents[i];
+        numbers[node] = i + 1;
+        out.text(numbers[node], ' ', kUndefined, ' ', p.x, ' ', p.y, ' ', p.z, ' ', skeleton.radii[node], ' ',
+                 parent == kNone ? kNone : parent + 1, '\n');
     }
-    for (const Index root : roots) {
-        const bool is_in_sheet = branch_degree[root] == 0 && degree[root] > 0;
-        if (numbers[root] != 0 || is_in_sheet) {
-            continue;
-        }
-        std::vector<std::array<Index, 2>> waiting{{root, kNone}};  // node and parent
-        while (!waiting.empty()) {
-            const auto [node, parent] = waiting.back();
-            waiting.pop_back();
-            if (numbers[node] != 0) {
-                cuts.push_back({numbers[node], numbers[parent]});
-                continue;
-            }
-            numbers[node] = ++count;
-            const Point& p = skeleton.nodes[node];
-            out.text(count, ' ', swc_type(degree[node], branch_degree[node]), ' ', p.x, ' ', p.y, ' ', p.z, ' ',
-                     skeleton.radii[node], ' ', parent == kNone ? kNone : numbers[parent], '\n');
-            for (std::size_t k = neighbors[node].size(); k-- > 0;) {
-                if (const Index next = neighbors[node][k]; numbers[next] == 0) {
-                    waiting.push_back({next, node});
-                }
-            }
-        }
-    }
-    for (const auto& [a, b] : cuts) {
-        out.text("# loop cut: an edge between ", a, " and ", b, " is left out\n");
+    for (const auto& [a, b] : tree.cuts) {
+        out.text("# loop cut: an edge between ", numbers[a], " and ", numbers[b], " is left out\n");
     }
     if (!skeleton.faces.empty()) {
         out.text("# sheets around voids: ", skeleton.faces.size(), " faces are left out\n");
+    }
+}
+
+/// Cylinders with the names and the numbering of TreeQSM (P. Raumonen et al., "Fast automatic precision tree models
+/// from terrestrial laser scanner data", 2013): ids, branches and positions from 1 on, parent 0 for none.
+void write_csv_skeleton(OutputFile& out, const Skeleton& skeleton) {
+    out.text("id,parent,start_x,start_y,start_z,axis_x,axis_y,axis_z,length,radius,branch,branch_order,");
+    out.text("position_in_branch\n");
+    std::size_t id = 0;
+    for (const Cylinder& c : cylinders(skeleton)) {
+        out.text(++id, ',', c.parent + 1, ',', c.start.x, ',', c.start.y, ',', c.start.z, ',', c.axis.x, ',', c.axis.y,
+                 ',', c.axis.z, ',', c.length, ',', c.radius, ',', c.branch + 1, ',', c.order, ',', c.position + 1,
+                 '\n');
     }
 }
 
@@ -152,11 +102,19 @@ void write_json_skeleton(OutputFile& out, const Skeleton& skeleton) {
     Json nodes = Json::array();
     for (std::size_t n = 0; n < skeleton.nodes.size(); ++n) {
         const Point& p = skeleton.nodes[n];
-        nodes.push_back({{"place", {p.x, p.y, p.z}},
-                         {"radius", skeleton.radii[n]},
-                         {"kind", kind_of(degree[n])},
-                         {"branch", skeleton.node_branches[n]},
-                         {"component", skeleton.node_components[n]}});
+        Json node{{"place", {p.x, p.y, p.z}},
+                  {"radius", skeleton.radii[n]},
+                  {"kind", kind_of(degree[n])},
+                  {"branch", skeleton.node_branches[n]},
+                  {"component", skeleton.node_components[n]}};
+        if (!skeleton.sections.empty()) {
+            const Section& section = skeleton.sections[n];
+            node["section"] = {{"area", section.area},
+                               {"least_width", section.least_width},
+                               {"largest_width", section.largest_width},
+                               {"is_closed", section.is_closed}};
+        }
+        nodes.push_back(node);
     }
     Json branches = Json::array();
     for (Index b = 0; b < static_cast<Index>(skeleton.branches.size()); ++b) {

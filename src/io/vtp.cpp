@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -9,6 +11,7 @@
 #include "axis/complex.hpp"
 #include "io/formats.hpp"
 #include "io/meshes/shells.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::io {
@@ -123,34 +126,134 @@ void write_vtp_axis(OutputFile& out, const MedialComplex& complex, const AxisFil
     end_piece(out, complex.vertices, cells);
 }
 
-/// Single nodes become vertices, branches lines, sheets around voids polygons, which are of no branch.
+namespace {
+
+/// The curves of a skeleton as VMTK has centerlines: each line has its own points, in the direction away from the root.
+struct Centerlines {
+    std::vector<Index> nodes;                ///< of each point; the first ones are all nodes in their order
+    IndexLists lines;                        ///< points
+    BranchPlaces places;                     ///< of the lines
+    std::vector<BranchGeometry> geometries;  ///< of the lines, along them
+};
+
+Centerlines centerlines_of(const Skeleton& skeleton) {
+    Centerlines result;
+    result.places = branch_places(skeleton);
+    Skeleton turned = skeleton;
+    turned.branches = {};
+    std::vector<char> has_line(skeleton.nodes.size());
+    for (Index n = 0; n < static_cast<Index>(skeleton.nodes.size()); ++n) {
+        result.nodes.push_back(n);
+    }
+    for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
+        std::vector<Index> nodes(skeleton.branches[b].begin(), skeleton.branches[b].end());
+        if (result.places.is_backwards[b] != 0) {
+            std::ranges::reverse(nodes);
+        }
+        turned.branches.push_back(nodes);
+        std::vector<Index> points;
+        for (const Index node : nodes) {
+            if (has_line[node] == 0) {
+                has_line[node] = 1;
+                points.push_back(node);
+            } else {
+                points.push_back(static_cast<Index>(result.nodes.size()));
+                result.nodes.push_back(node);
+            }
+        }
+        result.lines.push_back(points);
+        result.geometries.push_back(branch_geometry(turned, static_cast<Index>(b)));
+    }
+    return result;
+}
+
+/// An array of what the lines have at each of their points; other points have zeros.
+template <class Value>
+void write_along(OutputFile& out, std::string_view name, const Centerlines& curves,
+                 std::vector<Value> BranchGeometry::*values) {
+    std::vector<Value> all(curves.nodes.size());
+    for (std::size_t b = 0; b < curves.lines.size(); ++b) {
+        for (std::size_t k = 0; k < curves.lines[b].size(); ++k) {
+            all[curves.lines[b][k]] = (curves.geometries[b].*values)[k];
+        }
+    }
+    if constexpr (std::is_same_v<Value, Point>) {
+        out.text("<DataArray type=\"Float64\" Name=\"", name, "\" NumberOfComponents=\"3\" format=\"ascii\">\n");
+        for (const Point& p : all) {
+            out.text(p.x, ' ', p.y, ' ', p.z, '\n');
+        }
+        out.text("</DataArray>\n");
+    } else {
+        write_array(out, name, all.size(), [&](std::size_t i) { return all[i]; });
+    }
+}
+
+}  // namespace
+
+/// Single nodes become vertices, branches lines, sheets around voids polygons, which are of no branch. Names and types
+/// of VMTK (L. Antiga, D. Steinman; vmtk.org: vmtkcenterlines, vmtkbranchextractor, vmtkcenterlinegeometry,
+/// vmtkcenterlineattributes, vmtkcenterlinesections), whose filters find arrays by them, and our own.
 void write_vtp_skeleton(OutputFile& out, const Skeleton& skeleton) {
     const std::vector<Index> degree = degrees(skeleton);
-    const std::size_t count = skeleton.nodes.size();
-    Cells cells{{}, skeleton.branches, skeleton.faces};
-    for (Index n = 0; n < static_cast<Index>(count); ++n) {
+    const Centerlines curves = centerlines_of(skeleton);
+    const std::size_t count = curves.nodes.size();
+    Cells cells{{}, curves.lines, skeleton.faces};
+    for (Index n = 0; n < static_cast<Index>(skeleton.nodes.size()); ++n) {
         if (degree[n] == 0) {
             cells.vertices.push_back(std::array{n});
         }
     }
-    begin_piece(out, count, cells, "radius");
-    write_array(out, "radius", count, [&](std::size_t n) { return skeleton.radii[n]; });
-    write_array(out, "degree", count, [&](std::size_t n) { return degree[n]; });
-    write_array(out, "branch", count, [&](std::size_t n) { return skeleton.node_branches[n]; });
-    write_array(out, "component", count, [&](std::size_t n) { return skeleton.node_components[n]; });
-    out.text("</PointData>\n<CellData Scalars=\"branch\">\n");
-    const auto branch_of = [&](std::size_t cell) {
-        const std::size_t b = cell - cells.vertices.size();
-        return cell >= cells.vertices.size() && b < cells.lines.size() ? static_cast<Index>(b) : kNone;
+    const auto of_nodes = [&](std::string_view name, const auto& value) {
+        write_array(out, name, count, [&](std::size_t i) { return value(curves.nodes[i]); });
     };
+    const auto radius = [&](Index n) { return skeleton.radii[n]; };
+    begin_piece(out, count, cells, "radius");
+    of_nodes("radius", radius);
+    of_nodes("degree", [&](Index n) { return degree[n]; });
+    of_nodes("branch", [&](Index n) { return skeleton.node_branches[n]; });
+    of_nodes("component", [&](Index n) { return skeleton.node_components[n]; });
+    of_nodes("node", [](Index n) { return n; });
+    of_nodes("MaximumInscribedSphereRadius", radius);
+    write_along(out, "Abscissas", curves, &BranchGeometry::abscissas);
+    write_along(out, "Curvature", curves, &BranchGeometry::curvature);
+    write_along(out, "Torsion", curves, &BranchGeometry::torsion);
+    write_along(out, "FrenetTangent", curves, &BranchGeometry::tangents);
+    write_along(out, "FrenetNormal", curves, &BranchGeometry::normals);
+    write_along(out, "FrenetBinormal", curves, &BranchGeometry::binormals);
+    write_along(out, "ParallelTransportNormals", curves, &BranchGeometry::transported);
+    if (!skeleton.sections.empty()) {
+        const auto section = [&](std::string_view name, const auto& value) {
+            of_nodes(name, [&](Index n) { return value(skeleton.sections[n]); });
+        };
+        section("CenterlineSectionArea", [](const Section& s) { return s.area; });
+        section("CenterlineSectionMinSize", [](const Section& s) { return s.least_width; });
+        section("CenterlineSectionMaxSize", [](const Section& s) { return s.largest_width; });
+        section("CenterlineSectionShape",
+                [](const Section& s) { return s.largest_width > 0.0 ? s.least_width / s.largest_width : 0.0; });
+        section("CenterlineSectionClosed", [](const Section& s) { return s.is_closed ? 1 : 0; });
+    }
+    out.text("</PointData>\n<CellData Scalars=\"branch\">\n");
     const std::size_t cell_count = cells.vertices.size() + cells.lines.size() + cells.polygons.size();
-    write_array(out, "branch", cell_count, branch_of);
-    write_array(out, "length", cell_count, [&](std::size_t cell) {
-        const Index branch = branch_of(cell);
-        return branch == kNone ? 0.0 : branch_length(skeleton, branch);
-    });
+    const auto of_lines = [&](std::string_view name, const auto& others, const auto& value) {
+        write_array(out, name, cell_count, [&](std::size_t cell) {
+            const std::size_t b = cell - cells.vertices.size();
+            return cell >= cells.vertices.size() && b < cells.lines.size() ? value(b) : others;
+        });
+    };
+    const auto number = [](std::size_t b) { return static_cast<Index>(b); };
+    const auto length = [&](std::size_t b) { return branch_length(skeleton, static_cast<Index>(b)); };
+    of_lines("branch", kNone, number);
+    of_lines("length", 0.0, length);
+    of_lines("CenterlineIds", kNone, [&](std::size_t b) { return curves.places.centerlines[b]; });
+    of_lines("TractIds", kNone, [&](std::size_t b) { return curves.places.tracts[b]; });
+    of_lines("GroupIds", kNone, number);
+    of_lines("Blanking", Index{1}, [](std::size_t) { return Index{0}; });
+    of_lines("Length", 0.0, length);
+    of_lines("Tortuosity", 0.0, [&](std::size_t b) { return curves.geometries[b].tortuosity; });
     out.text("</CellData>\n");
-    end_piece(out, skeleton.nodes, cells);
+    std::vector<Point> points;
+    std::ranges::transform(curves.nodes, std::back_inserter(points), [&](Index n) { return skeleton.nodes[n]; });
+    end_piece(out, points, cells);
 }
 
 void write_vtp_surface(OutputFile& out, const TriangleMesh& mesh, std::span<const VertexValues> values) {

@@ -28,6 +28,7 @@
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
+#include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -777,40 +778,16 @@ class Assembly {
     Skeleton result_;
 };
 
-// Two directions that are normal to a vector and to each other.
-std::array<Point, 2> normals_to(const Point& direction) {
-    const auto [x, y, z] = std::array{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
-    const Point other = x <= y && x <= z ? Point{1, 0, 0} : y <= z ? Point{0, 1, 0} : Point{0, 0, 1};
-    const Point first = unit(cross(direction, other));
-    return {first, unit(cross(direction, first))};
-}
-
 // The mean distance from a point to the boundary in the plane normal to a direction; ways that lead on into other parts
 // of the solid do not count.
 double mean_radius(const Solid& solid, const Point& p, const Point& direction, double inscribed) {
     constexpr int kWays = 32;
     constexpr double kReach = 3.0;  // inscribed radii
-    const auto [u, v] = normals_to(direction);
-    std::vector<Point> ends;
-    for (int k = 0; k < kWays; ++k) {
-        const auto [cosine, sine] = on_circle(static_cast<double>(k) / kWays);
-        ends.push_back(p + kReach * inscribed * (cosine * u + sine * v));
-    }
-    std::vector<std::uint8_t> is_inside(ends.size());
-    solid.inside(ends, is_inside);
-    std::vector<Chord> chords;
-    for (std::size_t k = 0; k < ends.size(); ++k) {
-        if (is_inside[k] == 0) {
-            chords.push_back({p, ends[k], ends[k]});
-        }
-    }
-    std::vector<std::optional<Point>> crossings(chords.size());
-    solid.crossings(chords, crossings);
     double sum = 0.0;
     double count = 0.0;
-    for (const std::optional<Point>& crossing : crossings) {
-        if (crossing) {
-            sum += distance(p, *crossing);
+    for (const double way : ways_out(solid, p, direction, kWays, std::array{kReach * inscribed})) {
+        if (way != kNoWayOut) {
+            sum += way;
             count += 1.0;
         }
     }

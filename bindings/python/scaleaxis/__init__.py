@@ -73,7 +73,7 @@ from .nested import (
 )
 from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, AxisOptions, SamplingOptions, axis
-from .result import Axis, Midsurface, ShellMesh, Skeleton, Tables
+from .result import Axis, BranchGeometry, Midsurface, Sections, ShellMesh, Skeleton, Tables
 from .robots import RobotSpheres, robot_spheres
 from .solids import (
     BallUnion,
@@ -155,6 +155,7 @@ __all__ = [
     "AxisOptions",
     "BallUnion",
     "BoundaryMesh",
+    "BranchGeometry",
     "Cancelled",
     "CenteredComplex",
     "CleanedComplex",
@@ -194,6 +195,7 @@ __all__ = [
     "SamplingOptions",
     "ScaleAxisWarning",
     "ScalePlateau",
+    "Sections",
     "SharpComplex",
     "ShellMesh",
     "SimplifiedComplex",
@@ -222,9 +224,9 @@ __all__ = [
     "check_image_output",
     "check_mesh_output",
     "clean",
-    "contract_slivers",
     "cloud_solid",
     "compare",
+    "contract_slivers",
     "crust",
     "default_union",
     "delaunay",

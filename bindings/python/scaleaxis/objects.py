@@ -13,6 +13,7 @@ import numpy.typing as npt
 from ._arrays import Floats, Ints
 
 if TYPE_CHECKING:
+    import navis
     import networkx
     import osteoid
     import pyvista
@@ -97,6 +98,17 @@ def osteoid_of(vertices: Floats, edges: Ints, radii: Floats, transform: Floats) 
         transform=transform.astype(np.float32),
         space="physical",
     )
+
+
+def navis_of(nodes: Floats, radii: Floats, tree: Ints, parents: Ints, name: str) -> navis.TreeNeuron:
+    """Trees as a navis.TreeNeuron, whose node ids are those of the nodes."""
+    import navis
+    import pandas
+
+    x, y, z = nodes[tree].T
+    above = np.where(parents >= 0, tree[parents], -1)
+    columns = {"node_id": tree, "parent_id": above, "x": x, "y": y, "z": z, "radius": radii[tree], "label": 0}
+    return navis.TreeNeuron(pandas.DataFrame(columns), name=name)
 
 
 def plotted(

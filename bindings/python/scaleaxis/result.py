@@ -18,10 +18,11 @@ from ._options import Seed, checked
 from ._progress import Progress, part_of, telling
 from .adapt import as_mesh
 from .data import MedialComplex, Mesh, Polygons, Samples, Topology, complex_of, core_of, mesh_after
-from .errors import InvalidOption, Warning
+from .errors import InvalidOption, Warning, warn, warnings_of
 from .files import Path, write_axis, write_mesh
+from .loading import load_with
 from .measures import Thickness, thickness
-from .objects import networkx_of, osteoid_of, plotted, pyvista_of, span_of, table_of, trimesh_of
+from .objects import navis_of, networkx_of, osteoid_of, plotted, pyvista_of, span_of, table_of, trimesh_of
 from .page import NO_MESH, Page, boundary_of, page_path, view, viewed_axis, write_page
 from .similarity import similarity_of
 from .solids import BallUnion
@@ -29,6 +30,7 @@ from .stages import Json, densify, erosion_thickness, scaled
 from .surfaces import UnionMesh, mesh
 
 if TYPE_CHECKING:
+    import navis
     import networkx
     import osteoid
     import pandas
@@ -345,6 +347,29 @@ class Axis:
         )
 
 
+class BranchGeometry(NamedTuple):
+    """A branch as a curve in space; arrays have a row for each of its nodes."""
+
+    abscissas: Floats  #: lengths from its first node
+    curvature: Floats
+    torsion: Floats  #: positive: a right-handed helix; 0 where the curve is straight
+    tangents: Floats
+    normals: Floats  #: to the centre of curvature
+    binormals: Floats
+    parallel_normals: Floats  #: normals that do not turn around the curve
+    length: float
+    tortuosity: float  #: length / distance of the ends - 1
+
+
+class Sections(NamedTuple):
+    """Cross-sections of a solid at the nodes of its skeleton, in planes normal to the branches."""
+
+    areas: Floats
+    least_widths: Floats  #: of the chords through the node
+    largest_widths: Floats
+    is_closed: npt.NDArray[np.bool_]  #: False: the plane runs on into other parts of the solid, as at junctions
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Skeleton:
     """A curve skeleton: nodes with radii, edges between them, and the branches that they form."""
@@ -359,6 +384,7 @@ class Skeleton:
     faces: Polygons  #: of sheets around voids, which no curve can stand for
     vertex_nodes: Ints  #: of each vertex of the axis: the node that it has shrunk to
     statistics: Json
+    section_values: Floats = field(default_factory=lambda: np.empty((0, 4)))  #: see `sections`
     axis: Axis | None = field(default=None)  #: that it was made from; None: from a complex
 
     @property
@@ -402,8 +428,64 @@ class Skeleton:
 
     @checked
     def save(self, path: Path) -> None:
-        """Writes SWC (a tree for each component, loops cut), GraphML, JSON, VTP (polylines) or PLY (an axis)."""
-        _core.write_skeleton(path, self._fields())
+        """Writes SWC (a tree for each component, loops cut), GraphML, JSON, VTP (polylines, with VMTK's arrays), CSV
+        (`cylinders`) or PLY (an axis). Warns of what a file of trees loses.
+        """
+        warn(warnings_of(_core.write_skeleton(path, self._fields())))
+
+    @checked
+    def path(self, start: npt.ArrayLike, end: npt.ArrayLike) -> Skeleton:
+        """The shortest way along the curves between the nodes nearest to two places: a skeleton of one branch. Raises
+        UnusableInput if no curve leads from one to the other.
+        """
+        places = [np.asarray(place, dtype=np.float64) for place in (start, end)]
+        if any(place.shape != (3,) for place in places):
+            raise ValueError("a path has a start and an end, three numbers each")
+        return skeleton_of(_core.path_between(self._fields(), *(place.tolist() for place in places)))
+
+    @checked
+    def resampled(self, step: float) -> Skeleton:
+        """The same curves with nodes at even steps along each branch, of at most `step`; without `sections`."""
+        return skeleton_of(_core.resampled(self._fields(), step), self.axis)
+
+    @checked
+    def with_sections(self, solid: Any, *, threads: int = 0, progress: Progress = None) -> Skeleton:
+        """The same with `sections` of the solid, which is anything that `axis` takes."""
+        with telling(progress) as tell:
+            loaded = load_with(solid, {}, threads, tell)
+            if loaded.solid is None:
+                raise ValueError("sections need a solid, and points without normals are none: give a mesh or an image")
+            core = _core.with_sections(self._fields(), loaded.solid._core, threads, tell)
+        return skeleton_of(core, self.axis)
+
+    @property
+    def sections(self) -> Sections | None:
+        """Area and widths of cross-sections at each node, if they were asked for: see `with_sections`."""
+        area, least, largest, closed = self.section_values.T
+        return Sections(area, least, largest, closed != 0) if len(self.section_values) else None
+
+    @checked
+    def geometry(self, branch: int) -> BranchGeometry:
+        """Frames, curvature and torsion along a branch, of cubics fitted to the nodes within twice the radius."""
+        if not 0 <= branch < len(self.branches):
+            raise IndexError(f"there is no branch {branch}: there are {len(self.branches)}")
+        return BranchGeometry(**_core.branch_geometry(self._fields(), branch))
+
+    def cylinders(self) -> dict[str, npt.NDArray[Any]]:
+        """A quantitative structure model: columns, a row for each edge, in the terms of TreeQSM. `pandas.DataFrame`
+        takes them. Ids, branches and positions count from 1; parent 0: none.
+        """
+        numbers, places = _core.cylinders(self._fields())
+        parent, branch, order, position = places.T
+        names = ("start_x", "start_y", "start_z", "axis_x", "axis_y", "axis_z", "length", "radius")
+        return {
+            "id": np.arange(1, len(parent) + 1, dtype=np.int32),
+            "parent": parent + 1,
+            **dict(zip(names, numbers.T)),
+            "branch": branch + 1,
+            "branch_order": order,
+            "position_in_branch": position + 1,
+        }
 
     @checked
     def view(self, path: Path | None = None) -> Page:
@@ -453,6 +535,7 @@ class Skeleton:
             "face_offsets": self.faces.offsets,
             "face_nodes": self.faces.indices,
             "vertex_nodes": self.vertex_nodes,
+            "section_values": self.section_values,
         }
 
     def to_networkx(self) -> networkx.Graph[int]:
@@ -468,13 +551,20 @@ class Skeleton:
         transform = np.eye(3, 4) if self.axis is None else self.axis.transform
         return osteoid_of(self.nodes, self.edges, self.radii, transform)
 
+    def to_navis(self) -> navis.TreeNeuron:
+        """A navis.TreeNeuron: trees as in SWC; node ids are those of `nodes`. Warns of loops that were cut."""
+        tree, parents, cuts = _core.skeleton_tree(self._fields())
+        warn(warnings_of(cuts))
+        return navis_of(self.nodes, self.radii, tree, parents, self.axis.name if self.axis else "skeleton")
+
     def plot(self, *, shape: bool = True, plotter: pyvista.Plotter | None = None, **options: Any) -> Any:
         """Draws the curves by PyVista, coloured by radius: see `Axis.plot`."""
         surface = boundary_of(self.axis) if shape and self.axis else None
         return plotted(self.to_pyvista(), surface, plotter, {"scalars": "radius", **options})
 
     def _node_values(self) -> dict[str, npt.NDArray[Any]]:
-        return {"radius": self.radii, "branch": self.node_branches, "component": self.node_components}
+        values = {"radius": self.radii, "branch": self.node_branches, "component": self.node_components}
+        return {**values, "section_area": self.sections.areas} if self.sections else values
 
     def _repr_html_(self) -> str:
         rows = {

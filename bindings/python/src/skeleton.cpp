@@ -3,13 +3,16 @@
 #include "scaleaxis/skeleton.hpp"
 
 #include <nanobind/nanobind.h>
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -19,6 +22,7 @@
 #include "bindings.hpp"
 #include "calls.hpp"
 #include "data.hpp"
+#include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/measures.hpp"
 #include "scaleaxis/mesh.hpp"
@@ -47,6 +51,12 @@ Fields fields_of(Skeleton skeleton, const MedialComplex& complex) {
     fields["face_offsets"] = array_of(std::move(skeleton.faces.offsets));
     fields["face_nodes"] = array_of(std::move(skeleton.faces.items));
     fields["vertex_nodes"] = array_of(std::move(skeleton.vertex_nodes));
+    // Columns: area, least and largest width, and whether it is closed.
+    std::vector<std::array<double, 4>> sections;
+    std::ranges::transform(skeleton.sections, std::back_inserter(sections), [](const Section& s) {
+        return std::array{s.area, s.least_width, s.largest_width, s.is_closed ? 1.0 : 0.0};
+    });
+    fields["section_values"] = owning<double, 4>(std::move(sections));
     return fields;
 }
 
@@ -84,7 +94,53 @@ void bind_skeleton(nb::module_& m) {
     m.def("skeleton_complex", [](const Fields& skeleton) { return fields_of(complex_of(skeleton_of(skeleton))); });
     m.def("write_skeleton", [](const std::filesystem::path& file, const Fields& skeleton) {
         const Skeleton given = skeleton_of(skeleton);
-        unlocked([&] { write_skeleton(file, given); });
+        return to_json(std::span<const Diagnostic>(unlocked([&] { return write_skeleton(file, given); })));
+    });
+    m.def("path_between", [](const Fields& skeleton, const std::array<double, 3>& from,
+                             const std::array<double, 3>& to) {
+        const Skeleton path = path_between(skeleton_of(skeleton), {from[0], from[1], from[2]}, {to[0], to[1], to[2]});
+        return fields_of(path, complex_of(path));
+    });
+    m.def("resampled", [](const Fields& skeleton, double step) {
+        const Skeleton even = resampled(skeleton_of(skeleton), step);
+        return fields_of(even, complex_of(even));
+    });
+    m.def("with_sections", [](const Fields& skeleton, const Solid& solid, int threads, Tell progress) {
+        Skeleton given = skeleton_of(skeleton);
+        run({threads, std::move(progress)}, [&](const Execution& execution) {
+            add_sections(given, solid, execution);
+            return 0;
+        });
+        return fields_of(given, complex_of(given));
+    });
+    m.def("branch_geometry", [](const Fields& skeleton, Index branch) {
+        BranchGeometry geometry = branch_geometry(skeleton_of(skeleton), branch);
+        Fields fields;
+        fields["abscissas"] = array_of(std::move(geometry.abscissas));
+        fields["curvature"] = array_of(std::move(geometry.curvature));
+        fields["torsion"] = array_of(std::move(geometry.torsion));
+        fields["tangents"] = array_of(std::move(geometry.tangents));
+        fields["normals"] = array_of(std::move(geometry.normals));
+        fields["binormals"] = array_of(std::move(geometry.binormals));
+        fields["parallel_normals"] = array_of(std::move(geometry.transported));
+        fields["length"] = nb::float_(geometry.length);
+        fields["tortuosity"] = nb::float_(geometry.tortuosity);
+        return fields;
+    });
+    m.def("skeleton_tree", [](const Fields& skeleton) {
+        const Skeleton given = skeleton_of(skeleton);
+        SkeletonTree tree = tree_of(given);
+        return nb::make_tuple(array_of(std::move(tree.nodes)), array_of(std::move(tree.parents)),
+                              to_json(std::span<const Diagnostic>(tree_warnings(given))));
+    });
+    m.def("cylinders", [](const Fields& skeleton) {
+        std::vector<std::array<double, 8>> numbers;
+        std::vector<std::array<Index, 4>> places;
+        for (const Cylinder& c : cylinders(skeleton_of(skeleton))) {
+            numbers.push_back({c.start.x, c.start.y, c.start.z, c.axis.x, c.axis.y, c.axis.z, c.length, c.radius});
+            places.push_back({c.parent, c.branch, c.order, c.position});
+        }
+        return nb::make_tuple(owning<double, 8>(std::move(numbers)), array_of(std::move(places)));
     });
     m.def("measures", [](const Fields& complex, const Fields& skeleton, const PointsIn& vertices,
                          const RowsIn<3>& triangles, const DoublesIn& thickness, const std::string& pieces, int threads,
