@@ -32,6 +32,7 @@ FONT = Path(matplotlib.get_data_path(), "fonts/ttf/DejaVuSans.ttf")  # that of V
 SOURCES = {
     "psb/": "the Princeton segmentation benchmark (https://segeval.cs.princeton.edu)",
     "mesh/v-hacd/": "V-HACD (https://github.com/kmammou/v-hacd)",
+    "medial/vmtk/": "VMTK's tests (https://github.com/vmtk/vmtk-test-data)",
     "image/vmtk/": "VMTK's tests (https://github.com/vmtk/vmtk-test-data)",
     "image/niivue/": "NiiVue (https://github.com/niivue/niivue)",
     "point/": "https://github.com/alecjacobson/geometry-processing-mesh-reconstruction",
@@ -351,6 +352,35 @@ def skeleton(file: Path) -> None:
     draw(file, [Tile(result("skeleton", solid), "", mesh(solid)) for solid in solids], (420, 420), columns=3)
 
 
+def vessels(file: Path) -> None:
+    """VMTK's aorta: centerlines, sections as discs of their area, the path between two ends, cylinders."""
+    solid = model("medial/vmtk/aorta-surface.stl")
+    shape = mesh(solid)
+    curves, path, table = new_file(".vtp"), new_file(".vtp"), new_file(".csv")
+    program("skeleton", solid, "--sections", "-q", "-o", curves)
+    program("skeleton", solid, "--path", "223,170,24", "215,101,28", "-q", "-o", path)
+    program("skeleton", solid, "--step", 0.05, "-q", "-o", table)
+    lines = pyvista.read(curves)
+    discs = pyvista.PolyData()
+    for k in np.flatnonzero(lines["CenterlineSectionClosed"])[::12]:
+        radius = np.sqrt(lines["CenterlineSectionArea"][k] / np.pi)
+        disc = pyvista.Disc(center=lines.points[k], inner=0, outer=radius, normal=lines["FrenetTangent"][k], c_res=48)
+        discs = discs.append_polydata(disc.triangulate())
+    cylinders = pyvista.PolyData()
+    for row in np.genfromtxt(table, delimiter=",", names=True):
+        start, along = (np.array([row[f"{name}_{c}"] for c in "xyz"]) for name in ("start", "axis"))
+        middle = start + 0.5 * row["length"] * along
+        cylinder = pyvista.Cylinder(center=middle, direction=along, radius=row["radius"], height=row["length"])
+        cylinders = cylinders.append_polydata(cylinder.triangulate())
+    tiles = [
+        Tile(lines, "centerlines", shape),
+        Tile(discs, "sections", shape),
+        Tile(pyvista.read(path), "a path", shape),
+        Tile(cylinders, "cylinders"),
+    ]
+    draw(file, tiles, (300, 560), view=(0, 10))
+
+
 def spheres_of_cat(file: Path) -> None:
     tiles = [Tile(mesh(CAT), "a cat")]
     for kind, label in (("--cover", "32 balls that cover it"), ("--inside", "32 balls inside")):
@@ -495,6 +525,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "sharp-edges-casting": sharp_edges_casting,
     "simplification": simplification,
     "skeleton": skeleton,
+    "vessels": vessels,
     "robots": robots,
     "spheres": spheres_of_cat,
     "thickness": thickness,

@@ -19,7 +19,8 @@ namespace scaleaxis::inline v1 {
 
 /// The branches of a skeleton as trees, parents before children. Each component has one, rooted at its thickest end, or
 /// at its thickest node if it has no end; where there are `Skeleton::faces` it may have several, of what is left
-/// without them. Loops are cut, each at one edge.
+/// without them. Ways to the root are the shortest ones, so loops are cut where they are farthest from it, at an edge
+/// each.
 struct SkeletonTree {
     std::vector<Index> nodes;                ///< #T
     std::vector<Index> parents;              ///< #T; places in `nodes`; of a root `kNone`

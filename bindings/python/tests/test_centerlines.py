@@ -124,10 +124,10 @@ def test_branches_of_a_fork(fork):
 def test_path(fork):
     path = fork.path(TIPS[1], TIPS[2])
     assert len(path.branches) == 1 and path.axis is None
-    assert path.lengths == pytest.approx([7], abs=0.5)
+    assert path.lengths == pytest.approx([7], abs=0.6)  # it cuts the corner in the ball of the trunk
     np.testing.assert_allclose(path.nodes[0], TIPS[1], atol=0.1)
     np.testing.assert_allclose(path.nodes[-1], TIPS[2], atol=0.1)
-    assert path.resampled(0.5).radii.min() == pytest.approx(0.4, abs=0.02)
+    assert path.resampled(0.5).radii[[0, -1]] == pytest.approx([0.5, 0.4], abs=0.02)
     with pytest.raises(ValueError, match="three numbers"):
         fork.path([0, 0], [1, 1, 1])
 
@@ -151,7 +151,7 @@ def test_sections(fork):
     assert sections.is_closed[far].all()
     assert sections.areas[far] == pytest.approx(np.pi * fork.radii[far] ** 2, rel=0.06)
     with pytest.raises(ValueError, match="solid"):
-        fork.with_sections(np.random.default_rng(0).random((50, 3)))
+        fork.with_sections(scaleaxis.load(fork.axis.mesh().mesh.vertices, points="crust"))
 
 
 IMPORT = """
@@ -168,7 +168,8 @@ class Cell:
     pass
 
 
-h.Import3d_GUI(reader, False).instantiate(Cell())
+cell = Cell()  # owns the sections
+h.Import3d_GUI(reader, False).instantiate(cell)
 sections = list(h.allsec())
 print(int(reader.err), len(sections), sum(s.parentseg() is None for s in sections), sum(s.L for s in sections))
 """
@@ -192,8 +193,9 @@ def test_neuron_imports_swc(fork, loop, tmp_path):
     assert "# loop cut: an edge between" in (tmp_path / "loop.swc").read_text()
     errors, sections, roots, length = imported(tmp_path / "loop.swc")
     assert (errors, sections, roots) == (0, 3, 1)
-    cut = np.linalg.norm(np.diff(loop.nodes[loop.edges], axis=1), axis=2).max()
-    assert loop.lengths.sum() - 1.01 * cut < length < loop.lengths.sum()
+    steps = np.linalg.norm(np.diff(loop.nodes[loop.edges], axis=1), axis=2)
+    assert loop.lengths.sum() - 1.01 * steps.max() < length < loop.lengths.sum()
+    assert told[0].message.place[0] == pytest.approx(-2, abs=0.1)  # the far side of the ring
 
 
 @pytest.mark.filterwarnings("ignore::scaleaxis.Warning")

@@ -57,6 +57,38 @@ std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& 
     return roots;
 }
 
+/// The shortest ways from a node along edges (E. Dijkstra, 1959).
+struct ShortestWays {
+    std::vector<double> lengths;
+    std::vector<Index> previous;  ///< the node before on the way; `kNone`: there is no way, or it begins here
+
+    explicit ShortestWays(std::size_t nodes) : lengths(nodes, std::numeric_limits<double>::infinity()) {
+        previous.assign(nodes, kNone);
+    }
+
+    void find(const Skeleton& skeleton, const IndexLists& neighbors, Index source) {
+        using Entry = std::pair<double, Index>;
+        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
+        lengths[source] = 0.0;
+        waiting.push({0.0, source});
+        while (!waiting.empty()) {
+            const auto [way, node] = waiting.top();
+            waiting.pop();
+            if (way > lengths[node]) {
+                continue;
+            }
+            for (const Index other : neighbors[node]) {
+                const double longer = way + distance(skeleton.nodes[node], skeleton.nodes[other]);
+                if (longer < lengths[other]) {
+                    lengths[other] = longer;
+                    previous[other] = node;
+                    waiting.push({longer, other});
+                }
+            }
+        }
+    }
+};
+
 /// The branch of the edge between each node of a tree and its parent; of a root `kNone`.
 std::vector<Index> branches_to_parents(const Skeleton& skeleton, const SkeletonTree& tree) {
     const std::map<Edge, Index> branches = branches_of_edges(skeleton);
@@ -175,6 +207,7 @@ SkeletonTree tree_of(const Skeleton& skeleton) {
     const std::vector<Index> degree = degrees(skeleton);
     const std::vector<Index> branch_degree = branch_degrees(skeleton);
     const IndexLists neighbors = neighbors_on_branches(skeleton);
+    ShortestWays ways(skeleton.nodes.size());
     SkeletonTree tree;
     std::vector<Index> places(skeleton.nodes.size(), kNone);
     std::vector<Index> roots = roots_of(skeleton, degree);
@@ -188,20 +221,19 @@ SkeletonTree tree_of(const Skeleton& skeleton) {
         if (places[root] != kNone || is_in_sheet) {
             continue;
         }
-        std::vector<Edge> waiting{{root, kNone}};  // node and parent
+        ways.find(skeleton, neighbors, root);
+        std::vector<Edge> waiting{{root, kNone}};  // node, and the place of its parent
         while (!waiting.empty()) {
             const auto [node, parent] = waiting.back();
             waiting.pop_back();
-            if (places[node] != kNone) {
-                tree.cuts.push_back({node, parent});
-                continue;
-            }
             places[node] = static_cast<Index>(tree.nodes.size());
             tree.nodes.push_back(node);
-            tree.parents.push_back(parent == kNone ? kNone : places[parent]);
+            tree.parents.push_back(parent);
             for (std::size_t k = neighbors[node].size(); k-- > 0;) {
-                if (const Index next = neighbors[node][k]; places[next] == kNone) {
-                    waiting.push_back({next, node});
+                if (const Index next = neighbors[node][k]; ways.previous[next] == node) {
+                    waiting.push_back({next, places[node]});
+                } else if (ways.previous[node] != next && node < next) {
+                    tree.cuts.push_back({node, next});
                 }
             }
         }
@@ -318,34 +350,14 @@ Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& 
     const Index source = nearest(from);
     const Index target = nearest(to);
     const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), skeleton.edges);
-    std::vector<double> ways(skeleton.nodes.size(), std::numeric_limits<double>::infinity());
-    std::vector<Index> next(skeleton.nodes.size(), kNone);
-    // From the target on, so that the way is found in its order.
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
-    ways[target] = 0.0;
-    waiting.push({0.0, target});
-    while (!waiting.empty()) {
-        const auto [way, node] = waiting.top();
-        waiting.pop();
-        if (way > ways[node]) {
-            continue;
-        }
-        for (const Index other : neighbors[node]) {
-            const double longer = way + distance(skeleton.nodes[node], skeleton.nodes[other]);
-            if (longer < ways[other]) {
-                ways[other] = longer;
-                next[other] = node;
-                waiting.push({longer, other});
-            }
-        }
-    }
-    if (source != target && next[source] == kNone) {
+    ShortestWays ways(skeleton.nodes.size());
+    ways.find(skeleton, neighbors, target);  // from there, so that the path is found in its order
+    if (source != target && ways.previous[source] == kNone) {
         throw UnusableInput("no curve leads from one end of the path to the other: they are in different parts");
     }
     Skeleton result;
     std::vector<Index> branch;
-    for (Index n = source; n != kNone; n = n == target ? kNone : next[n]) {
+    for (Index n = source; n != kNone; n = ways.previous[n]) {
         const auto place = static_cast<Index>(result.nodes.size());
         result.nodes.push_back(skeleton.nodes[n]);
         result.radii.push_back(skeleton.radii[n]);
