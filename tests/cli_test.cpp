@@ -1930,6 +1930,37 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
 }
 
+TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
+    const std::vector<std::string> ring{
+        "--implicit", "sqrt((sqrt(x^2+y^2)-2)^2+z^2)-0.5", "--bounds", "-3,-3,-1,3,3,1", "--delta", "0.02"};
+    const auto skeleton = [&](std::vector<std::string> arguments) {
+        arguments.insert(arguments.begin(), "skeleton");
+        arguments.insert(arguments.end(), ring.begin(), ring.end());
+        return run(arguments);
+    };
+    const Outcome swc = skeleton({"-o", "ring.swc", "--step-abs", "0.5"});
+    ASSERT_EQ(swc.status, 0) << swc.err;
+    EXPECT_NE(swc.err.find("1 is cut"), std::string::npos) << swc.err;
+    // 4 pi in steps of at most 0.5 are 26.
+    EXPECT_NE(content(folder_ / "ring.swc").find("\n26 0 "), std::string::npos);
+    EXPECT_EQ(content(folder_ / "ring.swc").find("\n27 0 "), std::string::npos);
+    const Outcome json = skeleton({"-o", "ring.json", "--sections", "-q", "--path", "2,0,0", "0,-2,0"});
+    ASSERT_EQ(json.status, 0) << json.err;
+    EXPECT_EQ(json.err, "");
+    const Json path = Json::parse(content(folder_ / "ring.json"));
+    ASSERT_EQ(path["branches"].size(), 1u);
+    EXPECT_NEAR(path["branches"][0]["length"].get<double>(), 3.14, 0.2);  // a quarter, and not three
+    EXPECT_NEAR(path["nodes"][0]["place"][0].get<double>(), 2.0, 0.1);
+    for (const Json& node : path["nodes"]) {
+        EXPECT_NEAR(node["section"]["area"].get<double>(), 0.785, 0.05);
+        EXPECT_EQ(node["section"]["is_closed"], true);
+    }
+    ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-sharp", "-q"}).status, 0);
+    expect_error_line(run({"skeleton", "box.ply", "-o", "box.vtp", "--sections"}), "--sections are for solids");
+    expect_error_line(skeleton({"-o", "ring.swc", "--parts", "x.ply", "--path", "2,0,0", "0,-2,0"}), "--path");
+    EXPECT_EQ(skeleton({"-o", "ring.swc", "--path", "2,0,0"}).status, 2);
+}
+
 TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
     scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {5, 3, 0.5}));
     const Outcome outcome = run({"midsurface", "plate.off", "--delta", "0.015", "-o", "mid.ply", "--stats", "-"});

@@ -615,7 +615,7 @@ void write_image(const path& file, const Image& image, std::string_view format) 
 
 std::vector<Diagnostic> write_skeleton(const path& file, const Skeleton& skeleton, std::string_view format) {
     write(file, format, &Format::write_skeleton, skeleton);
-    const WriteSkeleton* writer = select_output(file, format, &Format::write_skeleton).write_skeleton;
+    WriteSkeleton* const writer = select_output(file, format, &Format::write_skeleton).write_skeleton;
     const bool has_trees = writer == write_swc_skeleton || writer == write_csv_skeleton;
     return has_trees ? tree_warnings(skeleton) : std::vector<Diagnostic>();
 }

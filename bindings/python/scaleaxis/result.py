@@ -563,7 +563,11 @@ class Skeleton:
         return plotted(self.to_pyvista(), surface, plotter, {"scalars": "radius", **options})
 
     def _node_values(self) -> dict[str, npt.NDArray[Any]]:
-        values = {"radius": self.radii, "branch": self.node_branches, "component": self.node_components}
+        values: dict[str, npt.NDArray[Any]] = {
+            "radius": self.radii,
+            "branch": self.node_branches,
+            "component": self.node_components,
+        }
         return {**values, "section_area": self.sections.areas} if self.sections else values
 
     def _repr_html_(self) -> str:

@@ -282,6 +282,7 @@ def test_unreadable(tmp_path: Path) -> None:
         run(tmp_path / "bad.txt", tmp_path / "out")
 
 
+@pytest.mark.filterwarnings("ignore:trees have no loops")  # of which the SWC file is made
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     source = str(saved(tmp_path, tubes()))
     words = ["volume", source, "-o", str(tmp_path / "out"), "--memory", "8GB", "--workers", "2"]
