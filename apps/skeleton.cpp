@@ -60,6 +60,7 @@ struct CurveOptions {
     double significance = SkeletonOptions().significance;
     SkeletonRadius radius = SkeletonRadius::kInscribed;
     bool leads_to_openings = false;
+    std::vector<std::array<double, 3>> root;  ///< one; empty: the thickest end
     std::vector<std::array<double, 3>> path;  ///< its ends; empty: all curves
     std::optional<Length> step;
     bool has_sections = false;
@@ -86,14 +87,14 @@ bool has_axis_options(const CurveOptions& options) {
            options.leads_to_openings || options.has_sections;
 }
 
-/// The path between two places, even steps.
+/// The root, the path between two places, even steps.
 Skeleton derived(Skeleton skeleton, const CurveOptions& options, double diagonal) {
+    const auto place = [](const std::array<double, 3>& p) { return Point{p[0], p[1], p[2]}; };
+    if (!options.root.empty()) {
+        skeleton.root = nearest_node(skeleton, place(options.root[0]));
+    }
     if (!options.path.empty()) {
-        const auto place = [&](std::size_t i) {
-            const auto& [x, y, z] = options.path[i];
-            return Point{x, y, z};
-        };
-        skeleton = path_between(skeleton, place(0), place(1));
+        skeleton = path_between(skeleton, place(options.path[0]), place(options.path[1]));
     }
     return options.step ? resampled(skeleton, options.step->of(diagonal)) : skeleton;
 }
@@ -308,6 +309,14 @@ Command skeleton_command(CommandLine program) {
     command.add_flag("--to-openings", options->leads_to_openings,
                      "Lead curves on to the middles of the holes of an open surface, which are closed, as of vessels\n"
                      "that are cut: by themselves they end a radius before");
+    command
+        .add_option(
+            "--root", options->root,
+            "Trees of SWC and CSV, and centerlines of VTP, lead away from the node nearest to this place, as an\n"
+            "inlet or a soma; of other parts, and by default, from the thickest end")
+        .delimiter(',')
+        .expected(1)
+        .value_text("X,Y,Z");
     command
         .add_option("--path", options->path,
                     "Only the shortest way along the curves between the nodes nearest to two places")

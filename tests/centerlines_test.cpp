@@ -163,6 +163,21 @@ TEST(Centerlines, TreeOfAForkWithALoop) {
     EXPECT_EQ(places.is_backwards, (std::vector<Index>{0, 0, 1, 0}));
 }
 
+TEST(Centerlines, TreesLeadAwayFromTheirRoot) {
+    Skeleton rooted = fork();
+    rooted.root = nearest_node(rooted, {2.2, 0, 4});
+    EXPECT_EQ(rooted.root, 4);
+    EXPECT_EQ(tree_of(rooted).nodes[0], 4);
+    EXPECT_EQ(branch_places(rooted).is_backwards, (std::vector<Index>{1, 1, 1, 0}));
+    const Skeleton even = resampled(rooted, 0.1);
+    EXPECT_EQ(even.nodes[even.root], rooted.nodes[4]);
+    rooted.root = 3;  // within a branch
+    const BranchPlaces places = branch_places(rooted);
+    EXPECT_EQ(places.tracts, (std::vector<Index>{1, 0, 1, 2}));
+    // A path leads from its first end, though that is the thinner one.
+    EXPECT_EQ(tree_of(path_between(fork(), {-2, 0, 4}, {0, 0, 0})).nodes[0], 0);
+}
+
 TEST(Centerlines, CylindersOfAFork) {
     const std::vector<Cylinder> all = cylinders(fork());
     ASSERT_EQ(all.size(), 8u);

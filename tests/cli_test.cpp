@@ -1944,7 +1944,8 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     // 4 pi in steps of at most 0.5 are 26.
     EXPECT_NE(content(folder_ / "ring.swc").find("\n26 0 "), std::string::npos);
     EXPECT_EQ(content(folder_ / "ring.swc").find("\n27 0 "), std::string::npos);
-    const Outcome json = skeleton({"-o", "ring.json", "--sections", "-q", "--path", "2,0,0", "0,-2,0"});
+    const Outcome json =
+        skeleton({"-o", "ring.json", "--sections", "-q", "--root", "0,2,0", "--path", "2,0,0", "0,-2,0"});
     ASSERT_EQ(json.status, 0) << json.err;
     EXPECT_EQ(json.err, "");
     const Json path = Json::parse(content(folder_ / "ring.json"));

@@ -17,7 +17,8 @@
 
 namespace scaleaxis::inline v1 {
 
-/// The branches of a skeleton as trees, parents before children. Each component has one, rooted at its thickest end, or
+/// The branches of a skeleton as trees, parents before children. Each component has one, rooted at
+/// `Skeleton::root`, at its thickest end, or
 /// at its thickest node if it has no end; where there are `Skeleton::faces` it may have several, of what is left
 /// without them. Ways to the root are the shortest ones, so loops are cut where they are farthest from it, at an edge
 /// each.
@@ -59,8 +60,12 @@ struct BranchGeometry {
 
 SCALEAXIS_EXPORT BranchGeometry branch_geometry(const Skeleton& skeleton, Index branch);
 
+/// The node nearest to a place, as for `Skeleton::root`. \throws UnusableInput if there is none
+SCALEAXIS_EXPORT Index nearest_node(const Skeleton& skeleton, const Point& place);
+
 /// The shortest way along the curves between the nodes nearest to two places, as a skeleton of one branch from the
-/// first to the second. \throws UnusableInput if the skeleton is empty or no curve leads from one to the other
+/// first, its root, to the second. \throws UnusableInput if the skeleton is empty or no curve leads from one to the
+/// other
 SCALEAXIS_EXPORT Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& to);
 
 /// The same curves with nodes at even steps along each branch: of the least number of equal ones that are no longer

@@ -61,6 +61,7 @@ struct Skeleton {
     /// #V of the complex: the node that each of its vertices has shrunk to.
     std::vector<Index> vertex_nodes;
     std::vector<Section> sections;  ///< #N, or empty; see `add_sections` in centerlines.hpp
+    Index root = kNone;             ///< the node that the tree of its component grows from; `kNone`: see `tree_of`
 };
 
 /// The number of edges at each node.

@@ -7,7 +7,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Annotated, Any, Literal, NamedTuple, cast
 
 import numpy as np
 import numpy.typing as npt
@@ -347,6 +347,13 @@ class Axis:
         )
 
 
+def _three(place: npt.ArrayLike) -> list[float]:
+    numbers = np.asarray(place, dtype=np.float64)
+    if numbers.shape != (3,):
+        raise ValueError(f"a place has three numbers, and not shape {numbers.shape}")
+    return cast(list[float], numbers.tolist())
+
+
 class BranchGeometry(NamedTuple):
     """A branch as a curve in space; arrays have a row for each of its nodes."""
 
@@ -385,6 +392,7 @@ class Skeleton:
     vertex_nodes: Ints  #: of each vertex of the axis: the node that it has shrunk to
     statistics: Json
     section_values: Floats = field(default_factory=lambda: np.empty((0, 4)))  #: see `sections`
+    root: int = -1  #: the node that the tree of its component grows from; -1: the thickest end
     axis: Axis | None = field(default=None)  #: that it was made from; None: from a complex
 
     @property
@@ -434,14 +442,16 @@ class Skeleton:
         warn(warnings_of(_core.write_skeleton(path, self._fields())))
 
     @checked
+    def rooted_at(self, place: npt.ArrayLike) -> Skeleton:
+        """The same, with the node nearest to a place as `root`: trees and centerlines lead away from it."""
+        return replace(self, root=_core.nearest_node(self._fields(), _three(place)))
+
+    @checked
     def path(self, start: npt.ArrayLike, end: npt.ArrayLike) -> Skeleton:
         """The shortest way along the curves between the nodes nearest to two places: a skeleton of one branch. Raises
         UnusableInput if no curve leads from one to the other.
         """
-        places = [np.asarray(place, dtype=np.float64) for place in (start, end)]
-        if any(place.shape != (3,) for place in places):
-            raise ValueError("a path has a start and an end, three numbers each")
-        return skeleton_of(_core.path_between(self._fields(), *(place.tolist() for place in places)))
+        return skeleton_of(_core.path_between(self._fields(), _three(start), _three(end)))
 
     @checked
     def resampled(self, step: float) -> Skeleton:
@@ -536,6 +546,7 @@ class Skeleton:
             "face_nodes": self.faces.indices,
             "vertex_nodes": self.vertex_nodes,
             "section_values": self.section_values,
+            "root": self.root,
         }
 
     def to_networkx(self) -> networkx.Graph[int]:

@@ -204,6 +204,10 @@ Skeleton skeleton_of(const Fields& fields) {
     skeleton.node_components = indices_of(fields, "node_components");
     skeleton.faces = lists_of(field<IndicesIn>(fields, "face_offsets"), field<IndicesIn>(fields, "face_nodes"));
     skeleton.vertex_nodes = indices_of(fields, "vertex_nodes");
+    skeleton.root = field<Index>(fields, "root");
+    if (skeleton.root < kNone || skeleton.root >= static_cast<Index>(skeleton.nodes.size())) {
+        throw InvalidOption("the root of a skeleton must be one of its nodes, or -1");
+    }
     const auto sections = field<BallsIn>(fields, "section_values");
     for (const auto& [area, least, largest, closed] : rows<std::array<double, 4>>(sections)) {
         skeleton.sections.push_back({area, least, largest, closed != 0.0});

@@ -51,6 +51,7 @@ Fields fields_of(Skeleton skeleton, const MedialComplex& complex) {
     fields["face_offsets"] = array_of(std::move(skeleton.faces.offsets));
     fields["face_nodes"] = array_of(std::move(skeleton.faces.items));
     fields["vertex_nodes"] = array_of(std::move(skeleton.vertex_nodes));
+    fields["root"] = nb::int_(skeleton.root);
     // Columns: area, least and largest width, and whether it is closed.
     std::vector<std::array<double, 4>> sections;
     std::ranges::transform(skeleton.sections, std::back_inserter(sections), [](const Section& s) {
@@ -100,6 +101,9 @@ void bind_skeleton(nb::module_& m) {
                              const std::array<double, 3>& to) {
         const Skeleton path = path_between(skeleton_of(skeleton), {from[0], from[1], from[2]}, {to[0], to[1], to[2]});
         return fields_of(path, complex_of(path));
+    });
+    m.def("nearest_node", [](const Fields& skeleton, const std::array<double, 3>& place) {
+        return nearest_node(skeleton_of(skeleton), {place[0], place[1], place[2]});
     });
     m.def("resampled", [](const Fields& skeleton, double step) {
         const Skeleton even = resampled(skeleton_of(skeleton), step);

@@ -132,6 +132,18 @@ def test_path(fork):
         fork.path([0, 0], [1, 1, 1])
 
 
+def test_root(fork, tmp_path):
+    rooted = fork.rooted_at(TIPS[2])
+    assert list(rooted.to_navis().root) == [rooted.root]
+    np.testing.assert_allclose(fork.nodes[rooted.root], TIPS[2], atol=0.1)
+    assert rooted.resampled(0.3).root >= 0
+    # A path leads from its start to its end, even if that is thicker.
+    fork.path(TIPS[2], TIPS[0]).save(tmp_path / "path.vtp")
+    data = polydata(tmp_path / "path.vtp")
+    line = [data.GetPoint(data.GetCell(0).GetPointId(k)) for k in (0, data.GetNumberOfPoints() - 1)]
+    np.testing.assert_allclose(line, TIPS[[2, 0]], atol=0.1)
+
+
 def test_even_steps(fork):
     even = fork.resampled(0.25)
     assert even.axis is fork.axis and even.lengths == pytest.approx(fork.lengths, rel=0.01)
@@ -199,7 +211,6 @@ def test_neuron_imports_swc(fork, loop, tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::scaleaxis.Warning")
-@pytest.mark.filterwarnings("ignore:::navis")
 def test_navis(fork, loop):
     neuron = fork.to_navis()
     assert neuron.n_trees == 1 and neuron.n_branches == 1 and neuron.n_ends == 3 - 1

@@ -10,6 +10,7 @@
 #include <queue>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -42,10 +43,11 @@ IndexLists neighbors_on_branches(const Skeleton& skeleton) {
     return grouped_both_ways(skeleton.nodes.size(), edges);
 }
 
-// The node of each component that its tree grows from: the thickest end, or if it has none the thickest node.
+// The node of each component that its tree grows from: the one that is given, the thickest end, or if it has none the
+// thickest node.
 std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& degree) {
     std::vector<Index> roots;
-    const auto key = [&](Index n) { return std::pair(degree[n] == 1, skeleton.radii[n]); };
+    const auto key = [&](Index n) { return std::tuple(n == skeleton.root, degree[n] == 1, skeleton.radii[n]); };
     for (Index n = 0; n < static_cast<Index>(skeleton.nodes.size()); ++n) {
         const Index component = skeleton.node_components[n];
         if (component == static_cast<Index>(roots.size())) {
@@ -339,16 +341,17 @@ BranchGeometry branch_geometry(const Skeleton& skeleton, Index branch) {
     return result;
 }
 
-Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& to) {
+Index nearest_node(const Skeleton& skeleton, const Point& place) {
     if (skeleton.nodes.empty()) {
-        throw UnusableInput("there is no path in a skeleton without nodes");
+        throw UnusableInput("a skeleton without nodes has none that is nearest to a place");
     }
-    const auto nearest = [&](const Point& p) {
-        const auto away = [&](const Point& node) { return squared_distance(node, p); };
-        return static_cast<Index>(std::ranges::min_element(skeleton.nodes, {}, away) - skeleton.nodes.begin());
-    };
-    const Index source = nearest(from);
-    const Index target = nearest(to);
+    const auto away = [&](const Point& node) { return squared_distance(node, place); };
+    return static_cast<Index>(std::ranges::min_element(skeleton.nodes, {}, away) - skeleton.nodes.begin());
+}
+
+Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& to) {
+    const Index source = nearest_node(skeleton, from);
+    const Index target = nearest_node(skeleton, to);
     const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), skeleton.edges);
     ShortestWays ways(skeleton.nodes.size());
     ways.find(skeleton, neighbors, target);  // from there, so that the path is found in its order
@@ -375,6 +378,7 @@ Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& 
     if (has_branch) {
         result.branches.push_back(branch);
     }
+    result.root = 0;
     return result;
 }
 
@@ -458,6 +462,7 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
     for (const Index n : skeleton.vertex_nodes) {
         result.vertex_nodes.push_back(moved[n]);
     }
+    result.root = skeleton.root == kNone ? kNone : moved[skeleton.root];
     return result;
 }
 
