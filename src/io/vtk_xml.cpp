@@ -19,7 +19,7 @@ namespace {
 
 using pugi::xml_node;
 
-constexpr std::string_view kTypes =
+constexpr std::string_view kXmlTypes =
     "Int8 i1 UInt8 u1 Int16 i2 UInt16 u2 Int32 i4 UInt32 u4 Int64 i8 UInt64 u8 Float32 f4 Float64 f8";
 
 /// Takes bytes off the stored ones.
@@ -143,7 +143,7 @@ VtkArray read_vtk_array(const pugi::xml_node& array, const VtkDocument& document
     using namespace vtk_xml;
     VtkArray result;
     const std::string type = vtk_attribute(array, "type");
-    const std::optional<NumberType> known = number_type_in(kTypes, type);
+    const std::optional<NumberType> known = number_type_in(kXmlTypes, type);
     result.type = known ? *known : throw unsupported("values of type " + io::quoted(type) + " cannot be read");
     const std::string format = vtk_attribute(array, "format", "ascii");
     if (format == "ascii") {
