@@ -42,6 +42,7 @@
 #include "scaleaxis/shells.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "scaleaxis/simplification.hpp"
+#include "scaleaxis/sizes.hpp"
 #include "scaleaxis/skeleton.hpp"
 #include "scaleaxis/smoothing.hpp"
 #include "scaleaxis/solid.hpp"

@@ -23,8 +23,8 @@
 #include "spatial/point_tree.hpp"
 #include "uses/divided_edges.hpp"
 #include "uses/flat_faces.hpp"
-#include "uses/opposite_sides.hpp"
 #include "uses/uphill.hpp"
+#include "uses/walls/opposite_sides.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -66,27 +66,6 @@ constexpr double kThickSlope = 0.02;  // growth at which a ball is taken to be t
 constexpr double kPointSize = 0.02;  // of the limit: the contacts of a smaller ball do not tell its direction
 
 constexpr double kOnEdge = 1e-6;  // barycentric coordinate of a point of an edge
-
-// Appends normals of vertices from the first that has none: the mean of those around, by their angles.
-void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals) {
-    const auto known = static_cast<Index>(normals.size());
-    normals.resize(mesh.vertices.size());
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        if (std::ranges::max(triangle) < known) {
-            continue;
-        }
-        const auto corner = [&](int k) { return mesh.vertices[triangle[k % 3]]; };
-        const Point normal = unit(cross(corner(1) - corner(0), corner(2) - corner(0)));
-        for (int k = 0; k < 3; ++k) {
-            if (triangle[k] >= known) {
-                const Point a = unit(corner(k + 1) - corner(k));
-                const Point b = unit(corner(k + 2) - corner(k));
-                normals[triangle[k]] = normals[triangle[k]] + angle_of(dot(a, b), norm(cross(a, b))) * normal;
-            }
-        }
-    }
-    std::for_each(normals.begin() + known, normals.end(), [](Point& normal) { normal = unit(normal); });
-}
 
 // Appends to which vertices point to one side: the surface falls back around them, on sharp edges and where its radius
 // of curvature is small.

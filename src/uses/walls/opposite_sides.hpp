@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <vector>
 
 #include "scaleaxis/geometry.hpp"
 #include "scaleaxis/solid.hpp"
@@ -26,6 +27,9 @@ class OutsideOf final : public Solid {
    private:
     const Solid& solid_;
 };
+
+/// Appends normals of vertices from the first that has none: the mean of those of the triangles there, by their angles.
+void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals);
 
 /// The ball that a point of the boundary leads to: one that is seen from the point in a direction, moved `uphill` to
 /// between two opposite sides. \param inwards of length 1 \param slope see `uphill` \param most radius of interest: a

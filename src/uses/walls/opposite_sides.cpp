@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "uses/opposite_sides.hpp"
+#include "uses/walls/opposite_sides.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "uses/uphill.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -149,6 +150,26 @@ Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) 
 }
 
 }  // namespace
+
+void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals) {
+    const auto known = static_cast<Index>(normals.size());
+    normals.resize(mesh.vertices.size());
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (std::ranges::max(triangle) < known) {
+            continue;
+        }
+        const auto corner = [&](int k) { return mesh.vertices[triangle[k % 3]]; };
+        const Point normal = unit(cross(corner(1) - corner(0), corner(2) - corner(0)));
+        for (int k = 0; k < 3; ++k) {
+            if (triangle[k] >= known) {
+                const Point a = unit(corner(k + 1) - corner(k));
+                const Point b = unit(corner(k + 2) - corner(k));
+                normals[triangle[k]] = normals[triangle[k]] + angle_of(dot(a, b), norm(cross(a, b))) * normal;
+            }
+        }
+    }
+    std::for_each(normals.begin() + known, normals.end(), [](Point& normal) { normal = unit(normal); });
+}
 
 void OutsideOf::inside(std::span<const Point> points, std::span<std::uint8_t> sides) const {
     solid_.inside(points, sides);
