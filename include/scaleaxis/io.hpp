@@ -33,6 +33,7 @@
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/medial_axis.hpp"
 #include "scaleaxis/shells.hpp"
+#include "scaleaxis/sizes.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -222,6 +223,19 @@ SCALEAXIS_EXPORT void write_shells(const std::filesystem::path& file, const Shel
                                    const ShellFileOptions& options = {}, std::string_view format = {});
 SCALEAXIS_EXPORT void check_shells_output(const std::filesystem::path& file,
                                           std::string_view format = {});  ///< as above
+
+/// Sizes of elements: to a view of Gmsh (.pos; .msh, version 4.1), tetrahedra of `SizeField::background`, which its
+/// option -bgm and its field PostView take; or to mmg's .sol, with the sizes at the vertices of the field's surface,
+/// and beside it that surface as Medit's .mesh, for mmgs. \throws FileError, Cancelled
+SCALEAXIS_EXPORT void write_sizes(const std::filesystem::path& file, const SizeField& sizes,
+                                  std::string_view format = {}, const Execution& execution = {});
+SCALEAXIS_EXPORT void check_sizes_output(const std::filesystem::path& file,
+                                         std::string_view format = {});  ///< as above
+
+/// The .sol of a mesh that is there already, as one of tetrahedra for mmg3d. \param mesh in Medit's text format (.mesh)
+/// \throws FileError, Cancelled
+SCALEAXIS_EXPORT void write_sizes_at(const std::filesystem::path& file, const SizeField& sizes,
+                                     const std::filesystem::path& mesh, const Execution& execution = {});
 
 /// A surface cut into the parts that belong to the branches of a skeleton, to binary PLY: vertices with `node`,
 /// `branch` and the colour of the branch. \param nodes of its vertices, see `nearest_nodes` \throws FileError,

@@ -131,6 +131,13 @@ WriteSkeleton write_swc_skeleton, write_csv_skeleton, write_graphml_skeleton, wr
 using WriteShells = void(OutputFile& out, const ShellMesh& shells, bool has_middles);
 WriteShells write_inp_shells, write_bdf_shells, write_msh_shells, write_vtu_shells;
 
+using WriteSizes = void(OutputFile& out, const SizeField& sizes, const Execution& execution);
+WriteSizes write_pos_sizes, write_msh_sizes;
+WriteSizes write_sol_sizes;  // of the vertices of its surface, which `write_medit_surface` writes
+void write_sol(OutputFile& out, std::span<const double> sizes);
+void write_medit_surface(OutputFile& out, const TriangleMesh& mesh);
+std::vector<Point> read_medit_vertices(std::string_view content);
+
 using WriteParts = void(OutputFile& out, const TriangleMesh& surface, const Skeleton& skeleton,
                         std::span<const Index> nodes);
 WriteParts write_ply_parts;

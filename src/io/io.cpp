@@ -61,6 +61,7 @@ struct Format {
     WriteSurface* write_surface = nullptr;
     WriteShells* write_shells = nullptr;
     int shell_order = 1;
+    WriteSizes* write_sizes = nullptr;
 };
 
 constexpr Format ball_text(std::string_view extension) {
@@ -168,7 +169,9 @@ constexpr std::array kFormats{
     Format{.extension = ".json", .write_skeleton = write_json_skeleton},
     Format{.extension = ".inp", .write_shells = write_inp_shells, .shell_order = 2},
     Format{.extension = ".bdf", .write_shells = write_bdf_shells},
-    Format{.extension = ".msh", .write_shells = write_msh_shells},
+    Format{.extension = ".msh", .write_shells = write_msh_shells, .write_sizes = write_msh_sizes},
+    Format{.extension = ".pos", .write_sizes = write_pos_sizes},
+    Format{.extension = ".sol", .write_sizes = write_sol_sizes},
     Format{.extension = ".vtu", .write_shells = write_vtu_shells},
 };
 
@@ -242,6 +245,9 @@ void write(const path& file, std::string_view format, Function Format::*member, 
     writer(out, content...);
     out.commit();
 }
+
+/// The mesh that a .sol belongs to: programs look for one of the same name.
+path medit_beside(const path& sol) { return path(sol).replace_extension(".mesh"); }
 
 /// Are there as many values as vertices, under names that files have no other use for?
 void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all) {
@@ -637,6 +643,36 @@ void write_shells(const path& file, const ShellMesh& shells, const ShellFileOpti
     OutputFile out(file);
     found.write_shells(out, shells, (options.order == 0 ? found.shell_order : options.order) == 2);
     out.commit();
+}
+
+void write_sizes(const path& file, const SizeField& sizes, std::string_view format, const Execution& execution) {
+    std::optional<OutputFile> surface;
+    if (select_writer(file, format, &Format::write_sizes) == write_sol_sizes) {
+        write_medit_surface(surface.emplace(medit_beside(file)), sizes.surface());
+    }
+    write(file, format, &Format::write_sizes, sizes, execution);
+    if (surface) {
+        surface->commit();
+    }
+}
+
+void write_sizes_at(const path& file, const SizeField& sizes, const path& mesh, const Execution& execution) {
+    if (select_writer(file, {}, &Format::write_sizes) != write_sol_sizes) {
+        throw FileError(Diagnostic{
+            "file.format", "cannot write " + utf8_of(file) + ": sizes at the vertices of a mesh are written as .sol"});
+    }
+    const std::vector<Point> vertices =
+        read_from(mesh, [](const Source& source) { return read_medit_vertices(source.content); });
+    OutputFile sol(file);
+    write_sol(sol, sizes(vertices, execution));
+    sol.commit();
+}
+
+void check_sizes_output(const path& file, std::string_view format) {
+    check_output(file, format, &Format::write_sizes);
+    if (select_writer(file, format, &Format::write_sizes) == write_sol_sizes) {
+        check_output_file(medit_beside(file));
+    }
 }
 
 void check_balls_output(const path& file, std::string_view format) { check_output(file, format, &Format::write_balls); }
