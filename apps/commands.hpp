@@ -31,6 +31,7 @@ Command skeleton_command(CommandLine program);
 Command midsurface_command(CommandLine program);
 Command thickness_command(CommandLine program);
 Command walls_command(CommandLine program);
+Command sizes_command(CommandLine program);
 Command table_command(CommandLine program);
 Command mesh_command(CommandLine program);
 Command sample_field_command(CommandLine program);

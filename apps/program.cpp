@@ -43,13 +43,13 @@ Status run_chosen(int argc, const char* const* argv, const std::stop_token& canc
         ->option_text("bash|zsh|fish");
     bool is_manual_asked_for = false;
     program.add_flag("--manual", is_manual_asked_for, "Print the manual page, for man")->option_text(" ");
-    const std::array commands{axis_command(program),       balls_command(program),        medial_command(program),
-                              filtration_command(program), filter_command(program),       clean_command(program),
-                              smooth_command(program),     refine_command(program),       simplify_command(program),
-                              skeleton_command(program),   midsurface_command(program),   thickness_command(program),
-                              walls_command(program),      table_command(program),        spheres_command(program),
-                              mesh_command(program),       sample_field_command(program), compare_command(program),
-                              view_command(program),       info_command(program)};
+    const std::array commands{axis_command(program),       balls_command(program),      medial_command(program),
+                              filtration_command(program), filter_command(program),     clean_command(program),
+                              smooth_command(program),     refine_command(program),     simplify_command(program),
+                              skeleton_command(program),   midsurface_command(program), thickness_command(program),
+                              walls_command(program),      sizes_command(program),      table_command(program),
+                              spheres_command(program),    mesh_command(program),       sample_field_command(program),
+                              compare_command(program),    view_command(program),       info_command(program)};
     try {
         program.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -7,14 +7,17 @@
 #include <limits>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "expression.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "readable.hpp"
+#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/ranges.hpp"
+#include "scaleaxis/sampling.hpp"
 #include "stopwatch.hpp"
 
 namespace scaleaxis::app {
@@ -431,6 +434,18 @@ void check_can_fit(const LoadedSolid& input, const std::optional<UnionKind>& kin
 
 Diagnostic unused_sampling_options() {
     return {"points.unused_options", "--delta and --sampling had no effect: the points are the samples (see method)"};
+}
+
+TriangleMesh take_surface(LoadedSolid& input, const std::optional<Length>& delta, std::uint64_t seed,
+                          const Execution& execution) {
+    if (!input.mesh.triangles.empty()) {
+        return std::move(input.mesh);
+    }
+    SamplingOptions sampling;
+    sampling.tolerance = delta.value_or(kDefaultDelta).of(input.solid->bounds().diagonal());
+    sampling.needs_manifold = true;
+    sampling.seed = seed;
+    return boundary_mesh(sample(*input.solid, sampling, execution), execution).mesh;
 }
 
 std::array<Point, 3> steps_of(const ImageReport& report) {

@@ -108,6 +108,10 @@ std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOpt
 LoadedSolid load_source(const Source& source, const Execution& execution,
                         const std::function<void(const Diagnostic&)>& warn = {}, bool keeps_mesh = false);
 
+/// The mesh of a solid that was loaded with `keeps_mesh`; of one that has none the triangles between samples.
+TriangleMesh take_surface(LoadedSolid& input, const std::optional<Length>& delta, std::uint64_t seed,
+                          const Execution& execution);
+
 /// From one voxel of an image to the next, along each of its axes.
 std::array<Point, 3> steps_of(const ImageReport& report);
 

@@ -18,11 +18,9 @@
 #include "options.hpp"
 #include "outputs.hpp"
 #include "page.hpp"
-#include "scaleaxis/boundary.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/report.hpp"
-#include "scaleaxis/sampling.hpp"
 #include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
@@ -78,18 +76,6 @@ WallsFiles walls_files_of(const WallsCommandOptions& options, const Source& sour
         outputs.push_back(files.page);
     }
     return files;
-}
-
-/// The surface that bounds a solid; that between samples where none is given.
-TriangleMesh surface_of(LoadedSolid& input, const WallsCommandOptions& options, const Execution& execution) {
-    if (!input.mesh.triangles.empty()) {
-        return std::move(input.mesh);
-    }
-    SamplingOptions sampling;
-    sampling.tolerance = options.delta.value_or(kDefaultDelta).of(input.solid->bounds().diagonal());
-    sampling.needs_manifold = true;
-    sampling.seed = options.common.seed;
-    return boundary_mesh(sample(*input.solid, sampling, execution), execution).mesh;
 }
 
 /// What is opposite each vertex, the nearer of both sides.
@@ -148,7 +134,7 @@ SourceResult run_walls_of(const WallsCommandOptions& options, const Source& sour
     }
     Stopwatch watch;
     const std::string unit = unit_of(input.input);
-    TriangleMesh surface = surface_of(input, options, listener.execution({0.3, 0.5}));
+    TriangleMesh surface = take_surface(input, options.delta, options.common.seed, listener.execution({0.3, 0.5}));
     const Execution execution = listener.execution({0.5, 1.0});
     Walls walls = find_walls(*input.solid, std::move(surface), options.walls, execution);
     input.costs.push_back(watch.lap("walls"));

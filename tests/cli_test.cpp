@@ -385,7 +385,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"NoSubcommand",
                    {},
                    "axis, balls, medial, filtration, filter, clean, smooth, refine, simplify, skeleton, midsurface, "
-                   "thickness, walls, table, spheres, mesh, sample-field, compare, view or info"},
+                   "thickness, walls, sizes, table, spheres, mesh, sample-field, compare, view or info"},
         WrongUsage{"PolygonsOfObj", {"axis", "box.off", "-o", "out.obj", "--polygons"}, "--polygons is for PLY"},
         WrongUsage{"PolygonsOfMaOnStdout",
                    {"clean", "box.off", "-o", "-", "--output-format", "ma", "--polygons"},
@@ -1960,6 +1960,36 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     expect_error_line(run({"skeleton", "box.ply", "-o", "box.vtp", "--sections"}), "--sections are for solids");
     expect_error_line(skeleton({"-o", "ring.swc", "--parts", "x.ply", "--path", "2,0,0", "0,-2,0"}), "--path");
     EXPECT_EQ(skeleton({"-o", "ring.swc", "--path", "2,0,0"}).status, 2);
+}
+
+TEST_F(CommandLine, SizesGoToFilesOfMeshers) {
+    scaleaxis::write_mesh(folder_ / "plate.off", scaleaxis::test::box_mesh({0, 0, 0}, {5, 3, 0.5}));
+    for (const std::string name : {"a.pos", "a.msh", "a.sol"}) {
+        const Outcome outcome =
+            run({"sizes", "plate.off", "--elements-across", "2", "--max-size", "1", "-o", name, "--stats", "-"});
+        ASSERT_EQ(outcome.status, 0) << outcome.err;
+        const Json result = Json::parse(outcome.out);
+        EXPECT_EQ(result["schema"], "scaleaxis.sizes/1");
+        EXPECT_NEAR(result["least"].get<double>(), 0.25, 1e-3);
+        EXPECT_EQ(result["of"], "thickness");
+    }
+    EXPECT_TRUE(content(folder_ / "a.pos").find("\nSS(") != std::string::npos);
+    EXPECT_TRUE(content(folder_ / "a.msh").starts_with("$MeshFormat\n4.1 0 8\n"));
+    EXPECT_NE(content(folder_ / "a.mesh").find("\nTriangles\n"), std::string::npos);
+
+    // Of a mesh that is there already: at the vertices of the file before.
+    ASSERT_EQ(
+        run({"sizes", "plate.off", "--elements-across", "2", "--max-size", "1", "--at", "a.mesh", "-o", "b.sol", "-q"})
+            .status,
+        0);
+    EXPECT_EQ(content(folder_ / "a.sol"), content(folder_ / "b.sol"));
+    EXPECT_EQ(run({"sizes", "plate.off", "--at", "a.mesh", "-o", "c.pos"}).status, 2);
+    EXPECT_EQ(run({"sizes", "plate.off", "--at", "plate.off", "-o", "c.sol"}).status, 3);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "c.sol"));
+    EXPECT_EQ(run({"sizes", "plate.off", "--at", "a.mesh", "-o", "a.sol", "-q"}).status, 0);
+    EXPECT_EQ(run({"sizes", "plate.off", "-o", "a.stl"}).status, 2);
+    EXPECT_EQ(run({"sizes", "plate.off", "-o", "a.pos", "--gradation", "0"}).status, 2);
+    EXPECT_EQ(run({"sizes", "plate.off", "-o", "a.pos", "--min-size", "2", "--max-size", "1"}).status, 2);
 }
 
 TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
