@@ -75,6 +75,7 @@ from .page import Page, view
 from .pipeline import DEFAULT_DELTA_RANGE, AxisOptions, SamplingOptions, axis
 from .result import Axis, BranchGeometry, Midsurface, Sections, ShellMesh, Skeleton, Tables
 from .robots import RobotSpheres, robot_spheres
+from .sizes import SizeField, SizeMesh, size_field
 from .solids import (
     BallUnion,
     Envelope,
@@ -199,6 +200,8 @@ __all__ = [
     "SharpComplex",
     "ShellMesh",
     "SimplifiedComplex",
+    "SizeField",
+    "SizeMesh",
     "Skeleton",
     "SkeletonOptions",
     "Solid",
@@ -274,6 +277,7 @@ __all__ = [
     "shrink",
     "signed_distance_image",
     "simplify",
+    "size_field",
     "skeleton",
     "smooth",
     "smoothed_mask",

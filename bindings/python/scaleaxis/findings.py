@@ -99,13 +99,13 @@ def _finding_of(entry: dict[str, Any]) -> Finding:
     )
 
 
-def _surface_of(loaded: LoadedSolid, delta: float, threads: int, tell: Any) -> Mesh:
+def surface_of(loaded: LoadedSolid, delta: float, threads: int, tell: Any) -> Mesh:
     """The mesh, or of what has none the triangles between samples."""
     if loaded.mesh is not None:
         return loaded.mesh
     solid = loaded.solid
     if solid is None:
-        raise InvalidOption('walls need a solid, not samples of its boundary: take points="mls"')
+        raise InvalidOption('this needs a solid, not samples of its boundary: take points="mls"')
     samples = sample(solid, delta * solid.diagonal, needs_manifold=True, threads=threads, progress=tell)
     return boundary_mesh(samples, threads=threads).mesh
 
@@ -136,7 +136,7 @@ def walls(
     """
     with telling(progress) as tell:
         loaded = load_with(solid, options, threads, part_of(tell, 0.0, 0.3))
-        surface = _surface_of(loaded, delta, threads, part_of(tell, 0.3, 0.5))
+        surface = surface_of(loaded, delta, threads, part_of(tell, 0.3, 0.5))
         assert loaded.solid is not None
         core = _core.find_walls(
             loaded.solid._core, *surface, min_wall, max_wall, min_gap, angle, edge, threads, part_of(tell, 0.5, 1.0)

@@ -21,6 +21,7 @@ void bind_labels(nanobind::module_& m);
 void bind_view(nanobind::module_& m);
 void bind_skeleton(nanobind::module_& m);
 void bind_walls(nanobind::module_& m);
+void bind_sizes(nanobind::module_& m);
 void bind_robots(nanobind::module_& m);
 void bind_volumes(nanobind::module_& m);
 

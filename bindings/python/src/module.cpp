@@ -23,6 +23,7 @@ NB_MODULE(_core, m) {
     bind_view(m);
     bind_skeleton(m);
     bind_walls(m);
+    bind_sizes(m);
     bind_robots(m);
     bind_volumes(m);
 }
