@@ -151,8 +151,9 @@ def draw(
             plotter.add_mesh(spheres(tile.thing), color=BALLS, smooth_shading=True, ambient=0.2)
         elif "radius" in tile.thing.point_data:
             add_axis(plotter, tile.thing, pixels)
-        elif "sheet" in tile.thing.cell_data:
-            tile.thing.cell_data["rgb"] = sheet_colors(tile.thing.cell_data["sheet"])
+        elif "sheet" in tile.thing.cell_data or "rgb" in tile.thing.cell_data:
+            if "sheet" in tile.thing.cell_data:
+                tile.thing.cell_data["rgb"] = sheet_colors(tile.thing.cell_data["sheet"])
             plotter.add_mesh(
                 tile.thing,
                 scalars="rgb",
@@ -440,6 +441,32 @@ def walls(file: Path) -> None:
     draw(file, [Tile(found)], (960, 420), view=(-25, 25))
 
 
+def sizes(file: Path) -> None:
+    """A profile with a thin rib and a block, as mmg (`mmgpy`) meshes it: red where elements are small."""
+    import meshio
+    import mmgpy
+
+    outline = [(0, 0), (40, 0), (40, 2), (29, 2), (29, 8), (25, 8), (25, 2), (11, 2), (11, 12), (10, 12), (10, 2), (0, 2)]
+    points = np.array([(x, y, 0.0) for x, y in outline[::-1]])
+    profile = pyvista.PolyData(points, [len(points), *range(len(points))]).triangulate()
+    part = new_file(".stl")
+    profile.extrude((0, 0, 16), capping=True).triangulate().save(part)
+    tiles = []
+    for across in (2, 4):
+        sol = new_file(".sol")
+        program("sizes", part, "--elements-across", across, "-q", "-o", sol)
+        tool = Path(mmgpy.__file__).parent / "bin" / "mmgs_O3"
+        subprocess.run([tool, sol.with_suffix(".mesh"), sol.with_name("fine.mesh")], check=True, capture_output=True)
+        fine = meshio.read(sol.with_name("fine.mesh"))
+        mesh = pyvista.PolyData.from_regular_faces(fine.points, fine.get_cells_type("triangle"))
+        logarithm = np.log(mesh.compute_cell_sizes()["Area"])
+        low, high = np.percentile(logarithm, [2, 98])
+        colors = matplotlib.colormaps["Spectral"](np.clip((logarithm - low) / (high - low), 0, 1))
+        mesh.cell_data["rgb"] = (255 * colors[:, :3]).astype(np.uint8)
+        tiles.append(Tile(mesh, f"{across} elements across"))
+    draw(file, tiles, (620, 420), view=(-25, 25))
+
+
 def volumes(file: Path) -> None:
     """The sheets of a gyroid in a ball: faces of the axis by their block, and without those of small angles."""
     from scaleaxis import read_axis
@@ -530,6 +557,7 @@ PICTURES: dict[str, Callable[[Path], None]] = {
     "spheres": spheres_of_cat,
     "thickness": thickness,
     "walls": walls,
+    "sizes": sizes,
     "volumes": volumes,
     "creases": creases,
     "holes": holes,
