@@ -30,6 +30,7 @@
 #include "scaleaxis/shrinking.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "uses/ascent.hpp"
+#include "uses/wide_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -113,45 +114,31 @@ MedialComplex part(const MedialComplex& complex, const Flags& keeps_face) {
     return result;
 }
 
-// Of these faces those in parts of sheets that are wide enough. A strip of width w and length l has the area w l and a
-// border of about 2 l.
+// Of these faces those in parts of sheets that are wide enough.
 Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
-    struct Extent {
-        double area = 0.0;
-        double volume = 0.0;  // area × thickness
-        double border = 0.0;
-    };
     const std::vector<EdgeFaces> edges = faces_of_edges(complex);
-    const auto is_inner = [&](const EdgeFaces& edge) {
-        return edge.count == 2 && faces[edge.faces[0]] != 0 && faces[edge.faces[1]] != 0;
-    };
-    DisjointSets parts(complex.faces.size());
-    for (const EdgeFaces& edge : edges) {
-        if (is_inner(edge)) {
-            parts.join(edge.faces[0], edge.faces[1]);
-        }
-    }
-    std::vector<Extent> extents(complex.faces.size());
-    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-        Extent& extent = extents[parts.find(f)];
-        const double area = face_area(complex, f);
-        double radius = 0.0;
-        for (const Index v : complex.faces[f]) {
-            radius += complex.radii[v] / static_cast<double>(complex.faces[f].size());
-        }
-        extent.area += area;
-        extent.volume += 2.0 * radius * area;
-        for (const Index e : complex.face_edges[f]) {
-            extent.border += is_inner(edges[e]) ? 0.0 : length_of(complex, e);
-        }
-    }
+    const SurfaceParts found = parts_of_faces(
+        faces, [&](Index f) { return face_area(complex, f); },
+        [&](Index f) {
+            double radius = 0.0;
+            for (const Index v : complex.faces[f]) {
+                radius += complex.radii[v] / static_cast<double>(complex.faces[f].size());
+            }
+            return 2.0 * radius;
+        },
+        [&](Index f, const auto& use) {
+            for (const Index e : complex.face_edges[f]) {
+                const EdgeFaces& at = edges[e];
+                use(at.count == 2 ? at.faces[at.faces[0] == f ? 1 : 0] : kNone, length_of(complex, e));
+            }
+        });
     Flags keeps(complex.faces.size());
-    for (Index f = 0; f < static_cast<Index>(keeps.size()); ++f) {
-        const auto& [area, volume, border] = extents[parts.find(f)];
-        keeps[f] =
-            faces[f] != 0 && 2.0 * area * area >= kLeastWidth * volume * border && area * area * area >= volume * volume
-                ? 1
-                : 0;
+    for (std::size_t f = 0; f < keeps.size(); ++f) {
+        if (found.numbers[f] != kNone) {
+            const SurfacePart& part = found.parts[found.numbers[f]];
+            const bool is_large = part.area * part.area * part.area >= part.volume * part.volume;
+            keeps[f] = is_large && part.is_wide(kLeastWidth) ? 1 : 0;
+        }
     }
     return keeps;
 }

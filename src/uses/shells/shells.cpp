@@ -27,6 +27,7 @@
 #include "spatial/point_tree.hpp"
 #include "uses/ascent.hpp"
 #include "uses/shells/remeshing.hpp"
+#include "uses/wide_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -130,50 +131,22 @@ TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbo
 // Parts of these triangles that hang together and are wide enough: the part of each triangle, or `kNone`.
 std::vector<Index> wide_parts(const Midsurface& surface, const Neighbourhood& neighbours, const TriangleFlags& counts,
                               double least_width) {
-    struct Extent {
-        double area = 0.0;
-        double volume = 0.0;
-        double border = 0.0;
-    };
-    const std::size_t count = counts.size();
-    DisjointSets sets(count);
-    const auto beside = [&](std::size_t t, std::size_t k) {
-        const Index side = neighbours.opposites[3 * t + k];
-        return side != kNone && counts[side / 3] != 0 ? side / 3 : kNone;
-    };
-    for (std::size_t t = 0; t < count; ++t) {
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (const Index other = beside(t, k); counts[t] != 0 && other != kNone) {
-                sets.join(static_cast<Index>(t), other);
+    const TriangleMesh& mesh = surface.mesh;
+    SurfaceParts found = parts_of_faces(
+        counts, [&](Index t) { return triangle_area(mesh, mesh.triangles[t]); },
+        [&](Index t) { return thickness_of(surface, t); },
+        [&](Index t, const auto& use) {
+            for (Index k = 0; k < 3; ++k) {
+                const Index side = neighbours.opposites[3 * t + k];
+                const std::array<Index, 3>& corners = mesh.triangles[t];
+                use(side == kNone ? kNone : side / 3,
+                    distance(mesh.vertices[corners[k]], mesh.vertices[corners[(k + 1) % 3]]));
             }
-        }
+        });
+    for (Index& part : found.numbers) {
+        part = part != kNone && found.parts[part].is_wide(least_width) ? part : kNone;
     }
-    std::vector<Extent> extents(count);
-    for (std::size_t t = 0; t < count; ++t) {
-        if (counts[t] == 0) {
-            continue;
-        }
-        Extent& extent = extents[sets.find(static_cast<Index>(t))];
-        const double area = triangle_area(surface.mesh, surface.mesh.triangles[t]);
-        extent.area += area;
-        extent.volume += area * thickness_of(surface, t);
-        for (std::size_t k = 0; k < 3; ++k) {
-            if (beside(t, k) == kNone) {
-                const auto& corners = surface.mesh.triangles[t];
-                extent.border +=
-                    distance(surface.mesh.vertices[corners[k]], surface.mesh.vertices[corners[(k + 1) % 3]]);
-            }
-        }
-    }
-    std::vector<Index> parts(count, kNone);
-    for (std::size_t t = 0; t < count; ++t) {
-        const Index part = sets.find(static_cast<Index>(t));
-        const auto& [area, volume, border] = extents[part];
-        if (counts[t] != 0 && 2.0 * area * area >= least_width * volume * border) {
-            parts[t] = part;
-        }
-    }
-    return parts;
+    return found.numbers;
 }
 
 // The parts of walls where balls are as large as the wall is thick. A sheet that has none, as a short one between two
