@@ -49,7 +49,8 @@ class SizeField:
 
     def gmsh_callback(self, dim: int, tag: int, x: float, y: float, z: float, lc: float) -> float:
         """For `gmsh.model.mesh.setSizeCallback`: the size at a point, or `lc`, what Gmsh asks for, where that is less."""
-        return min(self._core.at(x, y, z), lc)
+        size: float = self._core.at(x, y, z)
+        return min(size, lc)
 
     @cached_property
     def surface(self) -> Mesh:
