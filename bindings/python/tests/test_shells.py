@@ -142,6 +142,23 @@ def test_a_plate_bends_as_the_solid(tmp_path: Path) -> None:
     assert beam * (1 - POISSON**2) < found < beam
 
 
+def test_a_tapered_plate_bends_as_theory_says(tmp_path: Path) -> None:
+    length, width, root, tip = 80.0, 10.0, 3.0, 1.5
+    ends = [(x, t) for x, t in ((0.0, root), (length, tip))]
+    vertices = np.array([(x, y, side * t / 2) for x, t in ends for y in (0.0, width) for side in (-1, 1)])
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    triangles = np.array([t for a, b, c, d in quads for t in ((a, b, c), (a, c, d))], dtype=np.int32)
+    shells = scaleaxis.midsurface((vertices, triangles), delta=0.004).shells(size=2.5)
+    wanted = np.interp(shells.vertices[:, 0], [0, length], [root, tip])
+    assert shells.thickness == pytest.approx(wanted[shells.triangles], rel=0.02)
+    found = shell_deflection(tmp_path, shells, near(0, 0), near(0, length), 2)
+    assert "*NODAL THICKNESS" in (tmp_path / "shells.inp").read_text()
+    # Euler and Bernoulli: the square of the distance from the tip over E I, along the beam.
+    x = (np.arange(10_000) + 0.5) / 10_000 * length
+    theory = np.mean(x**2 / (YOUNG * width * (tip + (root - tip) * x / length) ** 3 / 12)) * length
+    assert found == pytest.approx(theory, rel=0.02)
+
+
 @pytest.mark.parametrize(
     ("boxes", "inertia", "shear_area"),
     [(I_BEAM, (12 * 20**3 - 11 * 18**3) / 12, 19.0), (TUBE, (12 * 10**3 - 10 * 8**3) / 12, 18.0)],

@@ -125,12 +125,10 @@ void write_inp_shells(OutputFile& out, const ShellMesh& shells, bool has_middles
         }
     }
     for (std::size_t sheet = 0; sheet < shells.sheets.size(); ++sheet) {
-        out.text("*SHELL SECTION, MATERIAL=WALL, ELSET=SHEET", sheet + 1);
-        if (is_even(shells.sheets[sheet])) {
-            out.text('\n', real_field(shells.sheets[sheet].mean, kInpWidth), '\n');
-        } else {
-            out.text(", NODAL THICKNESS\n");
-        }
+        // Where nodes have a thickness this one does not count, but without it CalculiX skips the next card.
+        out.text("*SHELL SECTION, MATERIAL=WALL, ELSET=SHEET", sheet + 1,
+                 is_even(shells.sheets[sheet]) ? "\n" : ", NODAL THICKNESS\n",
+                 real_field(shells.sheets[sheet].mean, kInpWidth), '\n');
     }
 }
 
