@@ -284,16 +284,18 @@ class SizeSearch {
         std::vector<Slab> slabs;
         std::vector<char> is_alone(places_.size(), 0);
         for (const std::array<Index, 3>& triangle : data_.surface.triangles) {
-            const auto [a, b, c] = triangle;
             if (data_.is_capped && std::ranges::all_of(triangle, [&](Index v) { return places_[v].size >= most_; })) {
                 continue;
             }
             const auto add = [&](double part) {
-                slabs.emplace_back(std::array{source(a, part), source(b, part), source(c, part)});
+                slabs.emplace_back(
+                    std::array{source(triangle[0], part), source(triangle[1], part), source(triangle[2], part)});
             };
             add(0.0);
             const bool is_across = std::ranges::all_of(triangle, [&](Index v) { return places_[v].is_across; });
-            if (is_across && is_even(a, b) && is_even(b, c) && is_even(c, a)) {
+            const bool is_uniform = is_even(triangle[0], triangle[1]) && is_even(triangle[1], triangle[2]) &&
+                                    is_even(triangle[2], triangle[0]);
+            if (is_across && is_uniform) {
                 const int layers = layers_of(triangle);
                 for (int k = 1; k <= layers; ++k) {
                     add(static_cast<double>(k) / layers);
