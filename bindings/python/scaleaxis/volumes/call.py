@@ -343,9 +343,7 @@ def volume(
     mismatches: dict[Triple, int] = {}
     if axis:
         contents = (storage.read(part_name(at.keys[0])) for at, row in zip(every, rows) if row["vertices"])
-        complex = stitched(
-            (part_of(content or b"") for content in contents), known.spacing, known.origin, options.scale
-        )
+        complex = stitched((part_of(content or b"") for content in contents), known, options.scale)
         euler = sum(row["euler"] for row in rows)
         solid = sum(row["solid_euler"] for row in rows)
         count = len(complex.vertices) - len(complex.edges) + len(complex.faces)

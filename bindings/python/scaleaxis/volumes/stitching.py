@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..data import MedialComplex, Polygons
+from .sources import Source
 
 _Arrays = dict[str, npt.NDArray[np.float64]]
 
@@ -40,7 +41,15 @@ def _ordered(faces: Polygons, angles: npt.NDArray[np.float64]) -> tuple[Polygons
     return Polygons(offsets.astype(np.int32), faces.indices[at]), angles[order]
 
 
-def stitched(parts: Iterable[_Arrays], spacing: float, origin: npt.ArrayLike, scale: float) -> MedialComplex:
+def _places(voxels: npt.NDArray[np.float64], source: Source) -> npt.NDArray[np.float64]:
+    """In space. Written out, for products of matrices may be rounded otherwise on another machine."""
+    places = np.tile(np.array(source.origin), (len(voxels), 1))
+    sides = [voxels[:, [axis]] * source.spacing * np.array(source.directions[axis]) for axis in range(3)]
+    places += sides[0] + sides[1] + sides[2]
+    return places
+
+
+def stitched(parts: Iterable[_Arrays], source: Source, scale: float) -> MedialComplex:
     """In units of the volume. The same whatever the parts are, and in whatever order they come."""
     vertices, radii, sizes, corners, angles, curves = [], [], [], [], [], []
     count = 0
@@ -61,8 +70,8 @@ def stitched(parts: Iterable[_Arrays], spacing: float, origin: npt.ArrayLike, sc
     faces, face_angles = _ordered(lists, np.concatenate(angles))
     edges = np.sort(numbers[np.concatenate(curves)], axis=1)
     complex = MedialComplex.from_polygons(
-        places[distinct] * spacing + np.asarray(origin),
-        np.concatenate(radii)[distinct] * spacing,
+        _places(places[distinct], source),
+        np.concatenate(radii)[distinct] * source.spacing,
         faces,
         edges[np.lexsort(edges.T[::-1])].astype(np.int32),
         scale,
