@@ -20,13 +20,14 @@ import scaleaxis
 import scipy.ndimage
 from scaleaxis import FileError, InvalidOption
 from scaleaxis.batch.command import main
-from scaleaxis.volumes import Report, volume
+from scaleaxis.volumes import Report, call, volume
 from scaleaxis.volumes.stitching import part_of
 from scaleaxis.volumes.worker import DEBUG
 
 Mask = npt.NDArray[Any]
 SHAPE = (40, 40, 96)  # z, y, x: blocks of 32 have a rim within the volume along x
 ONE = 96
+CORNERS = list(np.ndindex(2, 2, 2))
 
 
 def noise(seed: int, sigma: float) -> npt.NDArray[np.float64]:
@@ -126,7 +127,82 @@ def test_a_mismatch_names_the_block(tmp_path: Path) -> None:
     report = run(saved(tmp_path, mask), tmp_path / "out", block=32, scale=1.5)
     assert report.agrees is False and set(report.mismatches) == {(32, 0, 0)}
     told = json.loads((tmp_path / "out/report.json").read_text())
-    assert told["mismatches"][0][:3] == [32, 0, 0]
+    assert told["mismatches"] == [[32, 0, 0, report.mismatches[32, 0, 0]]]
+
+
+def well_composed(mask: Mask) -> Mask:
+    """With voxels more, until none touch in an edge or a corner alone, nor gaps between them."""
+    whole = np.pad(mask != 0, 1)
+    while True:
+        corners = np.stack([whole[z : z - 1 or None, y : y - 1 or None, x : x - 1 or None] for z, y, x in CORNERS])
+        corners = corners.reshape(2, 2, 2, *corners.shape[1:])
+        crosses = (corners == corners[::-1, ::-1, ::-1]).all((0, 1, 2)) & np.isin(corners.sum((0, 1, 2)), (2, 6))
+        for axis in range(3):
+            for end in range(2):
+                (a, b), (c, d) = np.moveaxis(corners, axis, 0)[end]
+                crosses |= (a == d) & (b == c) & (a != b)
+        if not crosses.any():
+            return whole[1:-1, 1:-1, 1:-1]
+        for z, y, x in CORNERS:
+            whole[z : z - 1 or None, y : y - 1 or None, x : x - 1 or None] |= crosses
+
+
+def euler_of_voxels(mask: Mask) -> int:
+    """Of voxels that are connected through their sides."""
+    whole, total = mask != 0, 0
+    for axes in ([], [0], [1], [2], [0, 1], [0, 2], [1, 2], [0, 1, 2]):
+        cells = whole
+        for axis in axes:
+            size = cells.shape[axis]
+            cells = np.take(cells, range(1, size), axis) & np.take(cells, range(size - 1), axis)
+        total += (-1) ** len(axes) * int(cells.sum())
+    return total
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_topology_of_random_fields(seed: int, tmp_path: Path) -> None:
+    """The solid has the topology of the voxels, where that is the same for all kinds of neighbourhood. The axis has that
+    of the solid, or the report says where it has not.
+    """
+    smooth = scipy.ndimage.gaussian_filter(np.random.default_rng(seed).standard_normal(SHAPE), 3.5)
+    mask = well_composed(np.pad((smooth > 0.8 * smooth.std())[2:-2, 2:-2, 2:-2], 2))
+    for smoothing in (0, 1):
+        report = run(saved(tmp_path, mask), tmp_path / f"out{smoothing}", block=32, smoothing=smoothing)
+        assert report.solid_euler == euler_of_voxels(mask), seed
+        assert report.agrees or report.mismatches, (seed, report)
+    assert report.agrees, (seed, report)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_topology_of_noise(seed: int, tmp_path: Path) -> None:
+    """Features as small as voxels, which no scale is right for: their block is named, and no other."""
+    mask = np.zeros(SHAPE, np.uint8)
+    mask[4:24, 4:24, 4:24] = np.random.default_rng(seed).uniform(size=(20,) * 3) < 0.3
+    report = run(saved(tmp_path, mask), tmp_path / "out", block=32, smoothing=0)
+    assert report.agrees is False and set(report.mismatches) == {(0, 0, 0)}, seed
+    assert report.euler is not None and report.solid_euler is not None
+    assert report.mismatches[0, 0, 0] == report.euler - report.solid_euler, seed
+
+
+def test_stitching_keeps_to_the_memory(tmp_path: Path, log: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    source = saved(tmp_path, tubes())
+    monkeypatch.setattr(call, "_STITCHED", 100_000)  # bytes a face: as if there were many
+    with pytest.raises(
+        InvalidOption, match=r"the blocks that are done have \d+ faces, which take .* GB when they are stitched"
+    ):
+        run(source, tmp_path / "out", memory="2GB", block=32, workers=1)
+    done = {json.loads(row.read_bytes())["key"] for row in (tmp_path / "out/blocks").glob("*.json")}
+    log.write_text("")
+    parts = run(source, tmp_path / "out", memory="2GB", block=32, workers=1, stitch=False)
+    assert parts.axis is None and not (tmp_path / "out/axis.ply").exists()
+    assert not done & set(log.read_text().split())
+    monkeypatch.undo()
+    report = run(source, tmp_path / "out", block=32)
+    assert report.computed == 0 and report.axis is not None
+    assert (parts.faces, parts.euler, parts.solid_euler) == (report.faces, report.euler, report.solid_euler)
+    assert report.faces == len(report.axis.faces)
+    with pytest.raises(InvalidOption, match="of the stitched axis"):
+        run(source, tmp_path / "out", stitch=False, skeleton=True)
 
 
 def test_thickness_is_that_of_the_definition(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 import uuid
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -98,6 +99,17 @@ class Storage:
         system, path = self._remote(name)
         file: IO[bytes] = system.open(path, "rb")
         return file
+
+    def remove(self, name: str) -> None:
+        """A file, or a folder with all that is in it, if it is there."""
+        if not self.is_local:
+            system, path = self._remote(name)
+            if system.exists(path):
+                system.rm(path, recursive=True)
+        elif os.path.isdir(self.path(name)):
+            shutil.rmtree(self.path(name))
+        else:
+            Path(self.path(name)).unlink(missing_ok=True)
 
     def names(self, folder: str = "") -> Iterator[str]:
         """The files in a folder, without what is below it."""

@@ -3,10 +3,15 @@
 
 from __future__ import annotations
 
+import hashlib
 import io
 import math
+import os
 import resource
+import tempfile
 import zlib
+from collections.abc import Callable
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +19,9 @@ import numpy.typing as npt
 
 from .. import _core
 from ..batch.storage import Storage
+from ..files import write_axis
 from .sources import Bytes, Source, Triple
+from .stitching import stitched
 
 CELL = 32  # voxels: of these cubes it is kept how deep the solid is, so that blocks know what is around them
 _FIRST_HALO = 32  # voxels, doubled until it reaches the surface
@@ -55,6 +62,32 @@ def row_name(key: str) -> str:
 
 def part_name(key: str) -> str:
     return f"blocks/{key}.npz"
+
+
+def polygons_name(key: str) -> str:
+    return f"blocks/{key}.ply"
+
+
+def digest(content: bytes) -> str:
+    return hashlib.blake2b(content, digest_size=8).hexdigest()
+
+
+def saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
+    """Where results are, or through a file of this machine. The library's own writers leave nothing in part."""
+    if storage.is_local:
+        os.makedirs(os.path.dirname(storage.path(name)), exist_ok=True)
+        save(Path(storage.path(name)))
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / os.path.basename(name)
+        save(file)
+        storage.write(name, file.read_bytes())
+
+
+def _write(task: Task, row: dict[str, Any], name: str, content: bytes) -> None:
+    """A result of a block, of which its row knows the digest."""
+    task.storage.write(name, content)
+    row.setdefault("files", {})[name] = digest(content)
 
 
 def _mask(source: Source, values: npt.NDArray[Any]) -> Bytes:
@@ -181,7 +214,7 @@ def npz(**arrays: npt.NDArray[Any]) -> bytes:
     return file.getvalue()
 
 
-def _write_thickness(task: Task) -> None:
+def _write_thickness(task: Task, row: dict[str, Any]) -> None:
     assert task.thickness is not None
     step, chunk = task.thickness
     mask, low = _padded_mask(task, 2 * math.ceil(task.largest_depth) + 2)
@@ -196,13 +229,13 @@ def _write_thickness(task: Task) -> None:
                     full = np.pad(part, [(0, chunk - size) for size in part.shape])
                     place = [(o + c) // chunk for o, c in zip(task.low[::-1], (z, y, x))]
                     name = f"thickness.zarr/0/{'.'.join(map(str, place))}"
-                    task.storage.write(name, zlib.compress(full.tobytes(), 1))
+                    _write(task, row, name, zlib.compress(full.tobytes(), 1))
 
 
 def _parts(task: Task) -> dict[str, Any]:
     row: dict[str, Any] = {"low": task.low, "high": task.high}
     if task.thickness is not None:
-        _write_thickness(task)
+        _write_thickness(task, row)
     if not task.wants_axis:
         return row
     halo = task.halo
@@ -224,7 +257,12 @@ def _parts(task: Task) -> dict[str, Any]:
         halo = math.ceil(part["halo"]) + 1
     names = ("vertices", "radii", "face_offsets", "face_vertices", "angles", "curves")
     if len(part["vertices"]):
-        task.storage.write(part_name(task.keys[0]), npz(**{name: part[name] for name in names}))
+        arrays = {name: part[name] for name in names}
+        _write(task, row, part_name(task.keys[0]), npz(**arrays))
+        complex = stitched([arrays], task.source, options.scale)
+        name = polygons_name(task.keys[0])
+        saved(task.storage, name, lambda file: write_axis(file, complex, polygons=True))
+        row["files"][name] = digest(task.storage.read(name) or b"")
     row.update({name: part[name] for name in ("euler", "solid_euler", "samples", "balls")})
     row.update(vertices=len(part["vertices"]), faces=len(part["face_offsets"]) - 1, halo=halo)
     return row

@@ -9,11 +9,11 @@ import io
 import json
 import math
 import os
-import tempfile
+import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from .. import _core
 from ..batch.call import _storage as storage_of
@@ -23,22 +23,26 @@ from ..batch.runners import dask_client, in_threads, on_dask, processors
 from ..batch.storage import Storage
 from ..curves import skeleton as skeleton_of
 from ..data import MedialComplex, Topology
-from ..errors import Error, InvalidOption
+from ..errors import Error, FileError, InvalidOption
 from ..files import write_axis
 from ..stages import clean as clean_axis
 from ..stages import filter as filter_axis
 from ..stages import topology
-from .blocks import Options, Task, part_name
+from .blocks import Options, Task, part_name, peak_memory, polygons_name, saved
+from .formats import NANOMETRES
 from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, blocks_of, first_edge
 from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
-from .worker import Row, compute, known_row, stop_all
+from .worker import UNWRITTEN, Row, compute, known_row, stop_all
 
 _FIRST_MOVE = 1e-4  # as the perturbation of `medial_axis`; doubled for all blocks if one of them contradicts itself
 _MOVES = 4
 _INCONSISTENT = "result"  # the code of InconsistentResult
 _MOST_FACES = 5_000_000  # of which Betti numbers are computed: seconds, beside minutes for the axis
+_ROOM = "make room or let it be written, and call again: what is done stays"
+# Bytes a face. Measured on axes of 200,000 and 600,000 faces: 457 stitched, 499 with the filter, 886 with cleaning.
+_STITCHED, _CLEANED = 550, 950
 _FINEST = 0.01  # voxels: the step of thickness, if the largest fits into 16 bits
 
 
@@ -82,6 +86,10 @@ def _key(kind: str, source: Source, low: Any, *told: Any) -> str:
     return f"{kind}-{place}-{hashlib.blake2b(text.encode(), digest_size=12).hexdigest()}"
 
 
+def _place(task: Task) -> str:
+    return f"the block at voxel {', '.join(map(str, task.low))}"
+
+
 def _lost(task: Task, _: str, **known: Any) -> list[Row]:
     return [{"key": task.keys[0], **known}]
 
@@ -93,9 +101,13 @@ class _Runs:
         self.storage, self.scheduler, self.workers, self.progress = storage, scheduler, workers, progress
         self.computed = 0
 
-    def rows(self, tasks: list[Task]) -> list[Row]:
-        """In the order of the tasks. Raises Error for the first that has no result, once all others are done."""
+    def rows(self, tasks: list[Task], check: Callable[[int], object] | None = None) -> list[Row]:
+        """In the order of the tasks. Raises Error for the first that has no result, once all others are done; at once
+        if results cannot be written, or if `check` does, which is told how many faces there are so far.
+        """
+        faces = 0
         counts = Counts(len(tasks))
+        by_key = {task.keys[0]: task for task in tasks}
         rows: dict[str, Row] = {}
         missing = []
         for task in tasks:
@@ -105,10 +117,20 @@ class _Runs:
             else:
                 rows[task.keys[0]] = row
                 counts.skipped += 1
+                faces += row.get("faces", 0)
+        if check is not None:
+            check(faces)
         with told(self.progress, counts) as tell:
             for found in self._computed(iter(missing)) if missing else ():
                 row = found[0]
+                if row.get("code") == UNWRITTEN:
+                    raise Error(
+                        f"{self.storage.root}: {_place(by_key[row['key']])}: {row['error']}: {_ROOM}", UNWRITTEN
+                    )
                 rows[row["key"]] = row
+                faces += row.get("faces", 0)
+                if check is not None:
+                    check(faces)
                 counts.tried += 1
                 counts.done += "error" not in row
                 counts.failed += "error" in row
@@ -117,8 +139,7 @@ class _Runs:
         for task in tasks:
             row = rows[task.keys[0]]
             if "error" in row:
-                place = ", ".join(map(str, task.low))
-                raise Error(f"the block at voxel {place}: {row['error']}", row.get("code") or "volume.block")
+                raise Error(f"{_place(task)}: {row['error']}", row.get("code") or "volume.block")
         return [rows[task.keys[0]] for task in tasks]
 
     def _computed(self, tasks: Iterator[Task]) -> Iterator[list[Row]]:
@@ -148,12 +169,14 @@ def _table(rows: list[Row], spacing: float) -> str:
 
 
 def _begin_thickness(storage: Storage, source: Source, step: float, chunk: int) -> None:
-    """A multiscale image of OME-Zarr 0.4. Chunks of 0 are left out."""
-    scale = [source.spacing] * 3
-    shifts = {"type": "translation", "translation": list(source.origin[::-1])}
-    steps = [{"type": "scale", "scale": scale}, shifts]
-    axes = [{"name": name, "type": "space"} for name in "zyx"]
-    image = {"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": steps}]}
+    """A multiscale image of OME-Zarr 0.4. Chunks of 0 are left out, so that none may be there of another volume."""
+    steps: list[dict[str, Any]] = [{"type": "scale", "scale": [source.spacing] * 3}]
+    if source.is_upright:  # this format has no directions
+        steps.append({"type": "translation", "translation": list(source.origin[::-1])})
+    unit = {"unit": source.unit} if source.unit in NANOMETRES else {}
+    axes = [{"name": name, "type": "space", **unit} for name in "zyx"]
+    levels = [{"path": "0", "coordinateTransformations": steps}]
+    image = {"version": "0.4", "name": "thickness", "axes": axes, "datasets": levels}
     array = {
         "zarr_format": 2,
         "shape": source.sizes[::-1],
@@ -165,54 +188,83 @@ def _begin_thickness(storage: Storage, source: Source, step: float, chunk: int) 
         "filters": None,
         "dimension_separator": ".",
     }
-    values = {"scale_factor": step * source.spacing, "add_offset": 0.0, "quantity": "diameter"}
-    for name, content in {
-        ".zgroup": {"zarr_format": 2},
-        ".zattrs": {"multiscales": [image]},
+    values = {"scale_factor": step * source.spacing, "add_offset": 0.0, "quantity": "diameter", **unit}
+    contents = {
         "0/.zarray": array,
         "0/.zattrs": values,
-    }.items():
-        storage.write(f"thickness.zarr/{name}", json.dumps(content).encode())
+        ".zgroup": {"zarr_format": 2},
+        ".zattrs": {"multiscales": [image], "scaleaxis": _key("thickness", source, (), step)},
+    }
+    written = {f"thickness.zarr/{name}": json.dumps(content).encode() for name, content in contents.items()}
+    if any(storage.read(name) != content for name, content in written.items()):
+        storage.remove("thickness.zarr")
+        for name, content in written.items():
+            storage.write(name, content)
 
 
-def _saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
-    """Through a file of this machine."""
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / os.path.basename(name)
-        save(file)
-        storage.write(name, file.read_bytes())
+def _tidy(storage: Storage) -> None:
+    """Without what killed processes have left behind in the middle of writing."""
+    for folder in ("blocks", "thickness.zarr/0", "skeletons", "thickness.zarr", ""):
+        for name in [name for name in storage.names(folder) if re.search(r"[.]part[0-9]*$", name)]:
+            storage.remove(f"{folder}/{name}".lstrip("/"))
 
 
-def _global_steps(
-    storage: Storage, complex: MedialComplex, angle: float | None, least: float | None, skeleton: bool
-) -> Topology | None:
+@contextmanager
+def _writing(storage: Storage) -> Iterator[None]:
+    """Around what writes results. What is done stays."""
+    try:
+        yield
+    except Error as error:
+        if isinstance(error, FileError) and error.code == "file.write":
+            raise Error(f"{error}: {_ROOM}", UNWRITTEN) from None
+        raise
+    except OSError as error:
+        what = (error.strerror or str(error)).lower()
+        raise Error(f"{storage.root}: results cannot be written: {what}: {_ROOM}", UNWRITTEN) from None
+
+
+class _Wanted(NamedTuple):
+    axis: bool
+    stitch: bool
+    thickness: bool
+    angle: float | None
+    clean: float | None
+    skeleton: bool
+
+
+def _global_steps(storage: Storage, source: Source, complex: MedialComplex, wanted: _Wanted) -> Topology | None:
     """What is made of the stitched axis. Returns its topology where that costs little beside the rest."""
     left = complex
-    if angle is not None:
-        left = filter_axis(left, angle).complex
-    if least is not None:
-        left = clean_axis(left, least).complex
+    if wanted.angle is not None:
+        left = filter_axis(left, wanted.angle).complex
+    if wanted.clean is not None:
+        left = clean_axis(left, wanted.clean).complex
     if left is not complex:
-        _saved(storage, "filtered.ply", lambda file: write_axis(file, left, polygons=True))
-    if skeleton:
+        saved(storage, "filtered.ply", lambda file: write_axis(file, left, polygons=True))
+    if wanted.skeleton:
         curves = skeleton_of(left)
-        _saved(storage, "skeleton.swc", curves.save)
-        write_precomputed(storage, curves)
+        saved(storage, "skeleton.swc", curves.save)
+        segment = source.labels[0] if len(source.labels) == 1 else 1
+        write_precomputed(storage, curves, segment, source.unit)
     return topology(left) if len(left.faces) <= _MOST_FACES else None
 
 
 def _mismatches(runs: _Runs, parts: list[Task]) -> dict[Triple, int]:
-    """The blocks whose axis has another Euler characteristic than their solid. Both are sums over blocks and what they
-    share, so that it is in one of them where those of the whole differ.
+    """The blocks whose axis has another Euler characteristic than their solid, each as a solid of its own that ends where
+    its core does.
     """
 
-    def check(part: Task) -> Task:
-        key = _key("check", part.source, part.low, part.high, part.options)
-        return part._replace(kind="check", keys=[key])
+    def tasks(move: float) -> list[Task]:
+        every = []
+        for part in parts:
+            options = part.options._replace(move=move)
+            key = _key("check", part.source, part.low, part.high, options, part.largest_depth)
+            every.append(part._replace(kind="check", keys=[key], options=options))
+        return every
 
-    checks = [check(part) for part in parts]
-    rows = zip(checks, runs.rows(checks))
-    return {at.low: row["euler"] - row["solid_euler"] for at, row in rows if row["euler"] != row["solid_euler"]}
+    rows, checks = _axis_rows(runs, tasks)
+    differences = ((at.low, row["euler"] - row["solid_euler"]) for at, row in zip(checks, rows))
+    return {low: much for low, much in differences if much}
 
 
 def _options(scale: float, smoothing: int, seed: int) -> None:
@@ -224,18 +276,126 @@ def _options(scale: float, smoothing: int, seed: int) -> None:
         raise InvalidOption(f"seed must be a whole number of at least 0, not {seed!r}")
 
 
-def _axis_rows(runs: _Runs, tasks: Callable[[float], list[Task]]) -> tuple[list[Row], list[Task]]:
+def _axis_rows(
+    runs: _Runs, tasks: Callable[[float], list[Task]], check: Callable[[int], object] | None = None
+) -> tuple[list[Row], list[Task]]:
     """Balls are moved more, in all blocks, until no block contradicts itself."""
     move = _FIRST_MOVE
     for attempt in range(_MOVES):
         try:
             every = tasks(move)
-            return runs.rows(every), every
+            return runs.rows(every, check), every
         except Error as error:
             if error.code != _INCONSISTENT or attempt == _MOVES - 1:
                 raise
             move *= 2
     raise AssertionError
+
+
+class _Stitched(NamedTuple):
+    axis: MedialComplex | None
+    topology: Topology | None
+    mismatches: dict[Triple, int]
+
+
+def _check_stitching(faces: int, wanted: _Wanted, memory: int) -> None:
+    """Raises InvalidOption if the stitched axis would not fit."""
+    needed = peak_memory() + faces * (_STITCHED if wanted.clean is None else _CLEANED)
+    if needed > memory:
+        raise InvalidOption(
+            f"the blocks that are done have {faces} faces, which take {needed / 1e9:.2g} GB when they are stitched, and "
+            f"the memory is {memory / 1e9:.2g} GB: give more, for what is done stays, leave the axis in parts, or take a "
+            "coarser level"
+        )
+
+
+def _put_together(
+    runs: _Runs, source: Source, every: list[Task], rows: list[Row], wanted: _Wanted, scale: float
+) -> _Stitched:
+    """The parts as one axis, and what is made of that."""
+    storage = runs.storage
+    differs = sum(row["euler"] for row in rows) != sum(row["solid_euler"] for row in rows)
+    mismatches = _mismatches(runs, every) if differs else {}
+    if not wanted.stitch:
+        return _Stitched(None, None, mismatches)
+    contents = (storage.read(part_name(at.keys[0])) for at, row in zip(every, rows) if row["vertices"])
+    complex = stitched((part_of(content or b"") for content in contents), source, scale)
+    euler = sum(row["euler"] for row in rows)
+    count = len(complex.vertices) - len(complex.edges) + len(complex.faces)
+    if count != euler:
+        raise Error(
+            f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}", "volume.stitch"
+        )
+    saved(storage, "axis.ply", lambda file: write_axis(file, complex, polygons=True))
+    return _Stitched(complex, _global_steps(storage, source, complex, wanted), mismatches)
+
+
+def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, memory: int, block: int | None) -> Report:
+    storage, share = runs.storage, memory // runs.workers
+    threads = max(1, processors() // runs.workers) if runs.scheduler is None else 1
+
+    def task(kind: str, low: Any, high: Any, options: Options, told: Any, **more: Any) -> Task:
+        key = _key(kind, source, low, high, options, told)
+        return Task(kind, [key], storage, source, options, low, high, threads, **more)
+
+    unused = Options(1.0, 0, 0, 0.0)  # depths are those of voxels
+    first = first_edge(share)
+    depth_rows = runs.rows([task("depths", low, high, unused, 0) for low, high in blocks_of(source.sizes, first)])
+    depths = DepthMap.of(source.sizes, depth_rows)
+    edge, blocks = depths.plan(options.scale, share, block)
+    largest = float(depths.depths.max())
+    if not blocks:
+        raise InvalidOption("no voxel is inside: another label or level?")
+    step = max(_FINEST, 2 * largest / 65535)
+    chunk = math.gcd(edge, 128)
+    if wanted.thickness:
+        _begin_thickness(storage, source, step, chunk)
+
+    def parts(move: float) -> list[Task]:
+        moved = options._replace(move=move)
+        thickness = (step, chunk) if wanted.thickness else None
+
+        def of(at: Block) -> Task:
+            told = (at.halo, at.largest_depth, wanted.axis, thickness)
+            more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": wanted.axis}
+            return task("part", at.low, at.high, moved, told, **more, thickness=thickness)
+
+        return [of(at) for at in blocks]
+
+    is_stitched = wanted.axis and wanted.stitch
+    rows, every = _axis_rows(
+        runs, parts, (lambda faces: _check_stitching(faces, wanted, memory)) if is_stitched else None
+    )
+    if any(row["labels"] for row in depth_rows):
+        storage.write("labels.csv", _table(depth_rows, source.spacing).encode())
+    found = _put_together(runs, source, every, rows, wanted, options.scale) if wanted.axis else None
+    report = Report(
+        block=edge,
+        blocks=len(blocks),
+        computed=runs.computed,
+        samples=int(depths.crossings.sum()),
+        vertices=0 if found is None or found.axis is None else len(found.axis.vertices),
+        faces=0 if found is None else sum(row["faces"] for row in rows),
+        euler=None if found is None else sum(row["euler"] for row in rows),
+        solid_euler=None if found is None else sum(row["solid_euler"] for row in rows),
+        topology=None if found is None else found.topology,
+        largest_depth=largest,
+        peak_memory=max(row["peak_memory"] for row in [*depth_rows, *rows]),
+        stitching_memory=_core.peak_memory(),
+        cpu_seconds=sum(row["seconds"] for row in [*depth_rows, *rows]),
+        mismatches={} if found is None else found.mismatches,
+        axis=None if found is None else found.axis,
+    )
+    told = {name: value for name, value in vars(report).items() if name not in ("axis", "computed")}
+    told |= {
+        "agrees": report.agrees,
+        "mismatches": [[*low, much] for low, much in report.mismatches.items()],
+        "unit": source.unit,
+        "parts": [polygons_name(at.keys[0]) for at, row in zip(every, rows) if row.get("vertices")],
+    }
+    storage.write("report.json", json.dumps(told, indent=1, default=str).encode())
+    _tidy(storage)
+    return report
 
 
 def volume(
@@ -255,6 +415,7 @@ def volume(
     scale: float = 1.1,
     seed: int = 1,
     axis: bool = True,
+    stitch: bool = True,
     thickness: bool = False,
     angle: float | None = None,
     clean: float | None = None,
@@ -266,7 +427,8 @@ def volume(
     is skipped.
 
     source: .npy, Zarr, OME-Zarr or N5, NRRD or NIfTI of raw data, Neuroglancer precomputed.
-    output: a folder, or a location of fsspec: gets `axis.ply`, `thickness.zarr`, `labels.csv`, `report.json`, `blocks`.
+    output: a folder, or a location of fsspec: gets `axis.ply`, `thickness.zarr`, `labels.csv`, `report.json`, `blocks`,
+        which has a PLY of each part of the axis.
     memory: of all workers together. It decides how large blocks are, if `block` does not.
     workers: blocks at a time on this machine (default: its processors).
     scheduler: of Dask, as for `batch`; then `workers` says how many share the memory.
@@ -279,6 +441,7 @@ def volume(
     scale: s, by which balls are grown.
     seed: of what is moved to be in general position.
     axis, thickness: what is wanted of each block.
+    stitch: whether the parts of the axis are put together, which has to fit into the memory, .55 kB a face.
     angle, clean: of the stitched axis sheets below this object angle (degrees) and what has less erosion thickness than
         this length are removed, as by `filter` and `clean`: `filtered.ply`.
     skeleton: the curve skeleton of what is left: `skeleton.swc`, and `skeletons`, precomputed for Neuroglancer.
@@ -289,6 +452,8 @@ def volume(
     _options(scale, smoothing, seed)
     if not (axis or thickness):
         raise InvalidOption("nothing is wanted: ask for the axis or the thickness")
+    if not (axis and stitch) and (skeleton or angle is not None or clean is not None):
+        raise InvalidOption("angle, clean and skeleton are of the stitched axis: leave them out, or stitch")
     if block is not None and (not isinstance(block, int) or block < 32 or block % 32):
         raise InvalidOption(f"block must be a multiple of 32 voxels, not {block!r}")
     at_a_time = processors() if workers is None else workers
@@ -301,83 +466,11 @@ def volume(
         else source_of(source, labels=labels, level=level, below=below, dataset=dataset, spacing=spacing)
     )
     storage = storage_of(output, storage_options)
-    share = memory_of(memory) // at_a_time
-    threads = max(1, processors() // at_a_time) if scheduler is None else 1
     runs = _Runs(storage, scheduler, at_a_time, progress)
-
-    def task(kind: str, low: Any, high: Any, options: Options, told: Any, **more: Any) -> Task:
-        key = _key(kind, known, low, high, options, told)
-        return Task(kind, [key], storage, known, options, low, high, threads, **more)
-
+    wanted = _Wanted(axis, stitch, thickness, angle, clean, skeleton)
     options = Options(float(scale), smoothing, seed, _FIRST_MOVE)
-    unused = Options(1.0, 0, 0, 0.0)  # depths are those of voxels
-    first = first_edge(share)
-    depth_rows = runs.rows([task("depths", low, high, unused, 0) for low, high in blocks_of(known.sizes, first)])
-    depths = DepthMap.of(known.sizes, depth_rows)
-    edge, blocks = depths.plan(options.scale, share, block)
-    largest = float(depths.depths.max())
-    if not blocks:
-        raise InvalidOption("no voxel is inside: another label or level?")
-    step = max(_FINEST, 2 * largest / 65535)
-    chunk = math.gcd(edge, 128)
-    if thickness:
-        _begin_thickness(storage, known, step, chunk)
-
-    def parts(move: float) -> list[Task]:
-        moved = options._replace(move=move)
-        wanted = (step, chunk) if thickness else None
-
-        def of(at: Block) -> Task:
-            told = (at.halo, at.largest_depth, axis, wanted)
-            more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": axis, "thickness": wanted}
-            return task("part", at.low, at.high, moved, told, **more)
-
-        return [of(at) for at in blocks]
-
-    rows, every = _axis_rows(runs, parts)
-    if any(row["labels"] for row in depth_rows):
-        storage.write("labels.csv", _table(depth_rows, known.spacing).encode())
-    complex: MedialComplex | None = None
-    found: Topology | None = None
-    euler = solid = None
-    mismatches: dict[Triple, int] = {}
-    if axis:
-        contents = (storage.read(part_name(at.keys[0])) for at, row in zip(every, rows) if row["vertices"])
-        complex = stitched((part_of(content or b"") for content in contents), known, options.scale)
-        euler = sum(row["euler"] for row in rows)
-        solid = sum(row["solid_euler"] for row in rows)
-        count = len(complex.vertices) - len(complex.edges) + len(complex.faces)
-        if count != euler:
-            raise Error(
-                f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}",
-                "volume.stitch",
-            )
-        stitched_complex = complex
-        _saved(storage, "axis.ply", lambda file: write_axis(file, stitched_complex, polygons=True))
-        if euler != solid:
-            mismatches = _mismatches(runs, every)
-        found = _global_steps(storage, complex, angle, clean, skeleton)
-    report = Report(
-        block=edge,
-        blocks=len(blocks),
-        computed=runs.computed,
-        samples=int(depths.crossings.sum()),
-        vertices=0 if complex is None else len(complex.vertices),
-        faces=0 if complex is None else len(complex.faces),
-        euler=euler,
-        solid_euler=solid,
-        topology=found,
-        largest_depth=largest,
-        peak_memory=max(row["peak_memory"] for row in [*depth_rows, *rows]),
-        stitching_memory=_core.peak_memory(),
-        cpu_seconds=sum(row["seconds"] for row in [*depth_rows, *rows]),
-        mismatches=mismatches,
-        axis=complex,
-    )
-    told_report = {name: value for name, value in vars(report).items() if name not in ("axis", "computed")}
-    told_report |= {"agrees": report.agrees, "mismatches": [[*low, much] for low, much in mismatches.items()]}
-    storage.write("report.json", json.dumps(told_report, indent=1, default=str).encode())
-    return report
+    with _writing(storage):
+        return _results(runs, known, options, wanted, memory_of(memory), block)
 
 
 __all__ = ["Report", "memory_of", "volume"]

@@ -47,6 +47,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--scale", type=float, default=1.1, metavar="S", help="by which balls are grown; default 1.1")
     add("--seed", type=int, default=1, metavar="N", help="of what is moved to be in general position; default 1")
     add("--no-axis", dest="axis", action="store_false", help="no axis")
+    add("--no-stitch", dest="stitch", action="store_false", help="leave the axis in parts, as many as there are blocks")
     add("--thickness", action="store_true", help="local thickness, thickness.zarr")
     add("--angle", type=float, metavar="DEGREES", help="remove sheets of a smaller object angle from the stitched axis")
     add("--clean", type=float, metavar="LENGTH", help="remove what has less erosion thickness from it")
@@ -68,6 +69,8 @@ def main(arguments: Sequence[str]) -> int:
                 print(f"{report.faces} faces; Euler characteristic {report.euler}, of the solid {report.solid_euler}")
                 for low, much in report.mismatches.items():
                     print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}")
+                if report.agrees is False and not report.mismatches:
+                    print("no block differs by itself: the difference is where blocks meet")
         return DONE
 
     return status_of("scaleaxis-batch volume", work)

@@ -40,6 +40,10 @@ class Source(NamedTuple):
     directions: Matrix = _UPRIGHT  #: of x, y and z, of length 1
     unit: str = ""  #: of lengths, as OME-Zarr calls it
 
+    @property
+    def is_upright(self) -> bool:
+        return self.directions == _UPRIGHT
+
     def read(self, low: Triple, high: Triple) -> Values:
         """The voxels from `low` to before `high`, which lie in the volume."""
         return _read(self.path, self.kind, self.dataset, low, high)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A process for each block, so that its memory is its own, and a block that is killed harms no other.
 
-python -m scaleaxis.volumes.worker    reads a task from standard input, and ends with it
+It reads a task from standard input, and ends with it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import threading
 from typing import Any
 
 from ..batch.storage import Storage
-from .blocks import Task, computed, row_name
+from ..errors import Error
+from .blocks import Task, computed, digest, row_name
 
 DEBUG = "SCALEAXIS_VOLUMES_DEBUG"
 """For tests: a JSON object; "log" is a file that gets a line for each block that is computed, "kill" the name of a file:
@@ -27,22 +28,34 @@ Row = dict[str, Any]
 _busy: set[subprocess.Popen[bytes]] = set()
 
 
+UNWRITTEN = "volume.storage"
+"""The code of a row whose result cannot be written: nor can those of others."""
+
+
 def known_row(storage: Storage, key: str) -> Row | None:
-    """The row of a block whose result is there: it is written last."""
+    """The row of a block whose results are there, and whole: it is written last."""
     text = storage.read(row_name(key))
     try:
-        return json.loads(text) if text else None
+        row: Row | None = json.loads(text) if text else None
     except ValueError:
         return None
+    for name, known in row.get("files", {}).items() if row else ():
+        content = storage.read(name)
+        if content is None or digest(content) != known:
+            return None
+    return row
 
 
 def compute(task: Task) -> list[Row]:
     """One row, with `error` if there is no result. Raises nothing."""
+    row = known_row(task.storage, task.keys[0])
+    if row is not None:  # of a worker of Dask that was killed before it could tell
+        return [row]
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
     message = ""
     for _ in range(_TRIES):
         process = subprocess.Popen(
-            [sys.executable, "-m", "scaleaxis.volumes.worker"],
+            [sys.executable, "-c", "from scaleaxis.volumes.worker import main; main()"],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -64,10 +77,10 @@ def compute(task: Task) -> list[Row]:
                 pipe.close()
         if answer:
             return [json.loads(answer)]
-        lines = told.decode(errors="replace").strip().splitlines()
-        message = lines[-1] if lines else f"its process was ended by signal {-process.returncode}"
         if process.returncode >= 0:
+            message = (told.decode(errors="replace").strip().splitlines() or ["its process ended without a word"])[-1]
             break
+        message = f"its process was ended by signal {-process.returncode}, {_TRIES} times: too little memory, perhaps"
     return [{"key": task.keys[0], "error": message}]
 
 
@@ -106,13 +119,18 @@ def main() -> None:
         task.storage.write(row_name(task.keys[0]), json.dumps(row).encode())
     except MemoryError:
         row = {"key": task.keys[0], "error": "it needs more memory than there is: use smaller blocks or fewer workers"}
+    except Error as error:
+        row = {
+            "key": task.keys[0],
+            "error": str(error),
+            "code": UNWRITTEN if error.code == "file.write" else error.code,
+        }
+    except OSError as error:
+        what = (error.strerror or str(error)).lower()
+        row = {"key": task.keys[0], "error": f"its result cannot be written: {what}", "code": UNWRITTEN}
     except Exception as error:
         text = " ".join(str(error).split()) or type(error).__name__
-        row = {"key": task.keys[0], "error": text, "code": getattr(error, "code", None)}
+        row = {"key": task.keys[0], "error": text}
     sys.stdout.write(json.dumps(row))
     sys.stdout.flush()
     os._exit(0)
-
-
-if __name__ == "__main__":
-    main()
