@@ -97,7 +97,7 @@ def test_thickness_is_a_volume_again(made: tuple[Report, Path], tmp_path: Path) 
 
 
 def test_skeletons_of_neuroglancer(made: tuple[Report, Path], tmp_path: Path) -> None:
-    """In nanometres, with radii, under the number of the label: as osteoid reads the file, and cloud-volume the layer."""
+    """In nanometres, with radii, under the number of the label: as osteoid and cloud-volume read them."""
     from cloudvolume import CloudVolume
 
     _, output = made

@@ -161,8 +161,8 @@ def euler_of_voxels(mask: Mask) -> int:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_topology_of_random_fields(seed: int, tmp_path: Path) -> None:
-    """The solid has the topology of the voxels, where that is the same for all kinds of neighbourhood. The axis has that
-    of the solid, or the report says where it has not.
+    """The solid has the topology of the voxels, where that is the same for all kinds of neighbourhood. The axis has
+    that of the solid, or the report says where it has not.
     """
     smooth = scipy.ndimage.gaussian_filter(np.random.default_rng(seed).standard_normal(SHAPE), 3.5)
     mask = well_composed(np.pad((smooth > 0.8 * smooth.std())[2:-2, 2:-2, 2:-2], 2))

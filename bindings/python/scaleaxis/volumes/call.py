@@ -11,7 +11,7 @@ import math
 import os
 import re
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -221,6 +221,9 @@ def _writing(storage: Storage) -> Iterator[None]:
     except OSError as error:
         what = (error.strerror or str(error)).lower()
         raise Error(f"{storage.root}: results cannot be written: {what}: {_ROOM}", UNWRITTEN) from None
+    finally:
+        with suppress(OSError):
+            _tidy(storage)
 
 
 class _Wanted(NamedTuple):
@@ -250,8 +253,8 @@ def _global_steps(storage: Storage, source: Source, complex: MedialComplex, want
 
 
 def _mismatches(runs: _Runs, parts: list[Task]) -> dict[Triple, int]:
-    """The blocks whose axis has another Euler characteristic than their solid, each as a solid of its own that ends where
-    its core does.
+    """The blocks whose axis has another Euler characteristic than their solid, each as a solid of its own that ends
+    where its core does.
     """
 
     def tasks(move: float) -> list[Task]:
@@ -303,9 +306,9 @@ def _check_stitching(faces: int, wanted: _Wanted, memory: int) -> None:
     needed = peak_memory() + faces * (_STITCHED if wanted.clean is None else _CLEANED)
     if needed > memory:
         raise InvalidOption(
-            f"the blocks that are done have {faces} faces, which take {needed / 1e9:.2g} GB when they are stitched, and "
-            f"the memory is {memory / 1e9:.2g} GB: give more, for what is done stays, leave the axis in parts, or take a "
-            "coarser level"
+            f"the blocks that are done have {faces} faces, which take {needed / 1e9:.2g} GB when they are stitched, "
+            f"and the memory is {memory / 1e9:.2g} GB: give more, for what is done stays, leave the axis in parts, "
+            "or take a coarser level"
         )
 
 
@@ -394,7 +397,6 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
         "parts": [polygons_name(at.keys[0]) for at, row in zip(every, rows) if row.get("vertices")],
     }
     storage.write("report.json", json.dumps(told, indent=1, default=str).encode())
-    _tidy(storage)
     return report
 
 
