@@ -6,12 +6,8 @@ from __future__ import annotations
 import hashlib
 import io
 import math
-import os
 import resource
-import tempfile
 import zlib
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -19,9 +15,8 @@ import numpy.typing as npt
 
 from .. import _core
 from ..batch.storage import Storage
-from ..files import write_axis
 from .sources import Bytes, Source, Triple
-from .stitching import stitched
+from .stitching import ply_of_part
 
 CELL = 32  # voxels: of these cubes it is kept how deep the solid is, so that blocks know what is around them
 _FIRST_HALO = 32  # voxels, doubled until it reaches the surface
@@ -70,18 +65,6 @@ def polygons_name(key: str) -> str:
 
 def digest(content: bytes) -> str:
     return hashlib.blake2b(content, digest_size=8).hexdigest()
-
-
-def saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
-    """Where results are, or through a file of this machine. The library's own writers leave nothing in part."""
-    if storage.is_local:
-        os.makedirs(os.path.dirname(storage.path(name)), exist_ok=True)
-        save(Path(storage.path(name)))
-        return
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / os.path.basename(name)
-        save(file)
-        storage.write(name, file.read_bytes())
 
 
 def _write(task: Task, row: dict[str, Any], name: str, content: bytes) -> None:
@@ -259,10 +242,7 @@ def _parts(task: Task) -> dict[str, Any]:
     if len(part["vertices"]):
         arrays = {name: part[name] for name in names}
         _write(task, row, part_name(task.keys[0]), npz(**arrays))
-        complex = stitched([arrays], task.source, options.scale)
-        name = polygons_name(task.keys[0])
-        saved(task.storage, name, lambda file: write_axis(file, complex, polygons=True))
-        row["files"][name] = digest(task.storage.read(name) or b"")
+        _write(task, row, polygons_name(task.keys[0]), ply_of_part(arrays, task.source, options.scale))
     row.update({name: part[name] for name in ("euler", "solid_euler", "samples", "balls")})
     row.update(vertices=len(part["vertices"]), faces=len(part["face_offsets"]) - 1, halo=halo)
     return row

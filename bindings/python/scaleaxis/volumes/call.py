@@ -10,9 +10,11 @@ import json
 import math
 import os
 import re
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, NamedTuple
 
 from .. import _core
@@ -28,7 +30,7 @@ from ..files import write_axis
 from ..stages import clean as clean_axis
 from ..stages import filter as filter_axis
 from ..stages import topology
-from .blocks import Options, Task, part_name, peak_memory, polygons_name, saved
+from .blocks import Options, Task, part_name, peak_memory, polygons_name
 from .formats import NANOMETRES
 from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, blocks_of, first_edge
@@ -235,6 +237,17 @@ class _Wanted(NamedTuple):
     skeleton: bool
 
 
+def _saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
+    """Where results are, or through a file of this machine. The library's own writers leave nothing in part."""
+    if storage.is_local:
+        save(Path(storage.path(name)))
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / os.path.basename(name)
+        save(file)
+        storage.write(name, file.read_bytes())
+
+
 def _global_steps(storage: Storage, source: Source, complex: MedialComplex, wanted: _Wanted) -> Topology | None:
     """What is made of the stitched axis. Returns its topology where that costs little beside the rest."""
     left = complex
@@ -243,10 +256,10 @@ def _global_steps(storage: Storage, source: Source, complex: MedialComplex, want
     if wanted.clean is not None:
         left = clean_axis(left, wanted.clean).complex
     if left is not complex:
-        saved(storage, "filtered.ply", lambda file: write_axis(file, left, polygons=True))
+        _saved(storage, "filtered.ply", lambda file: write_axis(file, left, polygons=True))
     if wanted.skeleton:
         curves = skeleton_of(left)
-        saved(storage, "skeleton.swc", curves.save)
+        _saved(storage, "skeleton.swc", curves.save)
         segment = source.labels[0] if len(source.labels) == 1 else 1
         write_precomputed(storage, curves, segment, source.unit)
     return topology(left) if len(left.faces) <= _MOST_FACES else None
@@ -329,7 +342,7 @@ def _put_together(
         raise Error(
             f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}", "volume.stitch"
         )
-    saved(storage, "axis.ply", lambda file: write_axis(file, complex, polygons=True))
+    _saved(storage, "axis.ply", lambda file: write_axis(file, complex, polygons=True))
     return _Stitched(complex, _global_steps(storage, source, complex, wanted), mismatches)
 
 

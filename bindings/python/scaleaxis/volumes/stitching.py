@@ -20,6 +20,28 @@ def part_of(content: bytes) -> _Arrays:
         return dict(file)
 
 
+def ply_of_part(part: _Arrays, source: Source, scale: float) -> bytes:
+    """A part by itself, in units of the volume. Written here, for a complex of it would take as long as its axis."""
+    vertices = np.column_stack([_places(part["vertices"], source), part["radii"] * source.spacing]).astype("<f8")
+    offsets = np.asarray(part["face_offsets"], np.int64)
+    sizes, curves = np.diff(offsets), np.asarray(part["curves"], "<i4").reshape(-1, 2)
+    lines = ["ply", "format binary_little_endian 1.0", "comment made by scaleaxis", f"comment scale {scale!r}"]
+    lines += [f"element vertex {len(vertices)}", *(f"property double {name}" for name in ("x", "y", "z", "radius"))]
+    lines += [f"element face {len(sizes)}", "property list uchar int vertex_indices", "property double angle"]
+    lines += [f"element edge {len(curves)}", "property int vertex1", "property int vertex2", "end_header", ""]
+    out = io.BytesIO()
+    out.write("\n".join(lines).encode() + vertices.tobytes())
+    for size in np.unique(sizes):  # records of the same length
+        there = np.flatnonzero(sizes == size)
+        rows = np.empty(len(there), [("count", "u1"), ("corners", "<i4", (size,)), ("angle", "<f8")])
+        rows["count"], rows["angle"] = size, part["angles"][there]
+        for corner in range(size):
+            rows["corners"][:, corner] = part["face_vertices"][offsets[there] + corner]
+        out.write(rows.tobytes())
+    out.write(curves.tobytes())
+    return out.getvalue()
+
+
 def _numbered(vertices: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
     """The positions of distinct vertices, ascending by x, y, z, and the number of each vertex among them."""
     order = np.lexsort(vertices.T[::-1])
@@ -43,6 +65,9 @@ def _ordered(faces: Polygons, angles: npt.NDArray[np.float64]) -> tuple[Polygons
 
 def _places(voxels: npt.NDArray[np.float64], source: Source) -> npt.NDArray[np.float64]:
     """In space. Written out, for products of matrices may be rounded otherwise on another machine."""
+    if source.is_upright:
+        upright: npt.NDArray[np.float64] = voxels * source.spacing + np.array(source.origin)
+        return upright
     places = np.tile(np.array(source.origin), (len(voxels), 1))
     sides = [voxels[:, [axis]] * source.spacing * np.array(source.directions[axis]) for axis in range(3)]
     places += sides[0] + sides[1] + sides[2]
