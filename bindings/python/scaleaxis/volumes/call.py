@@ -358,7 +358,7 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
     first = first_edge(share)
     depth_rows = runs.rows([task("depths", low, high, unused, 0) for low, high in blocks_of(source.sizes, first)])
     depths = DepthMap.of(source.sizes, depth_rows)
-    edge, blocks = depths.plan(options.scale, share, block)
+    edge, blocks = depths.plan(options.scale if wanted.axis else None, share, block)
     largest = float(depths.depths.max())
     if not blocks:
         raise InvalidOption("no voxel is inside: another label or level?")

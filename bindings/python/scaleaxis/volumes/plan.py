@@ -66,9 +66,9 @@ class DepthMap:
             for a, b, n in zip(low, high, self.depths.shape)
         )
 
-    def block(self, low: Triple, high: Triple, scale: float) -> Block | None:
+    def block(self, low: Triple, high: Triple, scale: float | None) -> Block | None:
         """None where nothing is inside. The halo and the largest depth within it depend on each other: both grow until
-        they agree.
+        they agree. Without a scale no axis is wanted, but the thickness alone.
         """
         core = self._at(low, high, 0)
         if not self.voxels[core].any():
@@ -76,18 +76,22 @@ class DepthMap:
         core_depth = float(self.depths[core].max())
         depth, halo = core_depth, 0
         while True:
-            halo = math.ceil(_core.halo_of_axis(core_depth, depth, scale)) + 1
-            around = float(self.depths[self._at(low, high, halo)].max())
+            # A ball that reaches the core has its centre within its radius; how deep that is needs as much again.
+            if scale is None:
+                halo = halo_of_thickness(depth)
+            else:
+                halo = math.ceil(_core.halo_of_axis(core_depth, depth, scale)) + 1
+            around = float(self.depths[self._at(low, high, depth if scale is None else halo)].max())
             if around <= depth + _ROUND:
                 break
             depth = around
         extents = [min(b + halo, n) - max(a - halo, 0) + 2 for a, b, n in zip(low, high, self.sizes)]
-        crossings = int(self.crossings[self._at(low, high, halo)].sum())
+        crossings = 0 if scale is None else int(self.crossings[self._at(low, high, halo)].sum())
         voxels = math.prod(extents)
         memory = _PROCESS + max(_VOXEL * voxels, _VALUE * voxels + _CROSSING * crossings)
         return Block(low, high, halo, depth, memory)
 
-    def plan(self, scale: float, memory: int, edge: int | None) -> tuple[int, list[Block]]:
+    def plan(self, scale: float | None, memory: int, edge: int | None) -> tuple[int, list[Block]]:
         """The size of blocks and those that are not empty. Raises InvalidOption if one needs more than `memory`."""
         for size in (edge,) if edge else _CHOICES:
             found = (self.block(low, high, scale) for low, high in blocks_of(self.sizes, size))
@@ -101,6 +105,10 @@ class DepthMap:
             f"is around it, where the solid is {at.largest_depth:.3g} voxels deep; a worker may have {memory / 1e9:.2g} GB: "
             "give more memory, use fewer workers or smaller blocks, or take a coarser level of the volume"
         )
+
+
+def halo_of_thickness(depth: float) -> int:
+    return 2 * math.ceil(depth) + 2
 
 
 def first_edge(memory: int) -> int:
