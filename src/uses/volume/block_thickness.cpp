@@ -123,6 +123,14 @@ class BallPainting {
             core_.low[axis] = static_cast<Index>(block.core_low[axis] - block.origin[axis]);
             core_.high[axis] = static_cast<Index>(block.core_high[axis] - block.origin[axis]);
         }
+        for (Index n = 0; n < 27; ++n) {
+            const Place step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+            const Index steps = std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]);
+            neighbors_.push_back(
+                {step, steps, (std::ptrdiff_t{step[2]} * sizes_[1] + step[1]) * sizes_[0] + step[0]});
+        }
+        std::ranges::stable_sort(neighbors_, {}, &Neighbor::steps);
+        neighbors_.erase(neighbors_.begin());  // itself
         largest_ = depths.empty() ? 0 : *std::ranges::max_element(depths);
     }
 
@@ -146,19 +154,20 @@ class BallPainting {
     }
 
     bool is_contained(const Place& p, std::int32_t depth, const ContainingDepths& containing) const {
-        for (Index dz = -1; dz <= 1; ++dz) {
-            for (Index dy = -1; dy <= 1; ++dy) {
-                for (Index dx = -1; dx <= 1; ++dx) {
-                    const Index steps = dx * dx + dy * dy + dz * dz;
-                    const Place q{p[0] + dx, p[1] + dy, p[2] + dz};
-                    if (steps != 0 && std::min({q[0], q[1], q[2]}) >= 0 && q[0] < sizes_[0] && q[1] < sizes_[1] &&
-                        q[2] < sizes_[2] && depths_[place(q[0], q[1], q[2])] >= containing[steps - 1][depth]) {
-                        return true;
+        const std::size_t here = place(p[0], p[1], p[2]);
+        const bool is_at_rim = std::min({p[0], p[1], p[2]}) == 0 || p[0] + 1 == sizes_[0] || p[1] + 1 == sizes_[1] ||
+                               p[2] + 1 == sizes_[2];
+        return std::ranges::any_of(neighbors_, [&](const Neighbor& neighbor) {
+            if (is_at_rim) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    const Index at = p[axis] + neighbor.step[axis];
+                    if (at < 0 || at >= sizes_[axis]) {
+                        return false;
                     }
                 }
             }
-        }
-        return false;
+            return depths_[here + neighbor.offset] >= containing[neighbor.steps - 1][depth];
+        });
     }
 
     /// Those that reach the core, and that no neighbour's contains; without those of a single voxel.
@@ -269,7 +278,14 @@ class BallPainting {
         }
     }
 
+    struct Neighbor {
+        Place step{};
+        Index steps = 0;  // axes along which it is another
+        std::ptrdiff_t offset = 0;
+    };
+
     Place sizes_;
+    std::vector<Neighbor> neighbors_;  // those across a face first: they contain most balls
     std::span<const std::int32_t> depths_;
     Tiles array_;
     VoxelBox core_;

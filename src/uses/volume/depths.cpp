@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -70,6 +71,75 @@ class Parabolas {
     std::vector<std::int64_t> begins_;
 };
 
+/// As many lines side by side, which the compiler's vector operations take together: a line of the cache.
+constexpr Index kLines = 16;
+
+/// Where the solid is deeper the parabolas are faster: a step costs 1 ns a voxel, they cost 15 to 20.
+constexpr Index kMostSteps = 16;
+
+constexpr std::int32_t kFar = 1 << 30;  // more than any squared distance in an array, and small enough to add to
+
+/// Beside each other; looks at all places that are near enough to matter, one after the other.
+class NearLines {
+   public:
+    explicit NearLines(std::size_t size) : values_(size) {}
+
+    /// False, and nothing is changed, if a place is too far from the nearest zero.
+    bool transform(std::int32_t* at, Index size, std::ptrdiff_t stride) {
+        for (Index i = 0; i < size; ++i) {
+            for (Index n = 0; n < kLines; ++n) {
+                values_[i][n] = std::min(at[i * stride + n], kFar);
+            }
+        }
+        for (Index i = 0; i < size; ++i) {
+            Lines least = values_[i];
+            Index step = 1;
+            while (step * step < most(least)) {
+                if (step > kMostSteps) {
+                    restore(at, i, stride);
+                    return false;
+                }
+                if (i >= step) {
+                    take(least, values_[i - step], step * step);
+                }
+                if (i + step < size) {
+                    take(least, values_[i + step], step * step);
+                }
+                ++step;
+            }
+            std::ranges::copy(least, at + i * stride);
+        }
+        return true;
+    }
+
+   private:
+    using Lines = std::array<std::int32_t, kLines>;
+
+    static void take(Lines& least, const Lines& other, std::int32_t away) {
+        for (Index n = 0; n < kLines; ++n) {
+            least[n] = std::min(least[n], other[n] + away);
+        }
+    }
+
+    static std::int32_t most(const Lines& lines) {
+        std::int32_t result = 0;
+        for (const std::int32_t value : lines) {
+            result = std::max(result, value);
+        }
+        return result;
+    }
+
+    void restore(std::int32_t* at, Index size, std::ptrdiff_t stride) const {
+        for (Index i = 0; i < size; ++i) {
+            for (Index n = 0; n < kLines; ++n) {
+                at[i * stride + n] = values_[i][n] == kFar ? kNoneOutside : values_[i][n];
+            }
+        }
+    }
+
+    std::vector<Lines> values_;
+};
+
 /// Squared distance of each voxel of a row to the nearest 0 in it.
 void transform_row(const std::uint8_t* mask, std::int32_t* at, Index size) {
     std::int32_t away = kNoneOutside;
@@ -96,14 +166,22 @@ std::vector<std::int32_t> squared_depths(const std::array<Index, 3>& sizes, std:
         std::vector<std::int32_t> depths(mask.size());
         const std::ptrdiff_t width = sizes[0];
         const std::ptrdiff_t plane = width * sizes[1];
-        const auto along = [&](Index size, std::ptrdiff_t stride, Index planes, Index lines, std::ptrdiff_t of_plane,
-                               std::ptrdiff_t of_line) {
+        const auto along = [&](Index size, std::ptrdiff_t stride, Index planes, std::ptrdiff_t of_plane) {
             for_each_index(
                 planes,
                 [&](Index p) {
                     Parabolas parabolas(size);
-                    for (Index line = 0; line < lines; ++line) {
-                        parabolas.transform(depths.data() + p * of_plane + line * of_line, size, stride);
+                    NearLines near(size);
+                    for (Index line = 0; line < sizes[0];) {
+                        std::int32_t* at = depths.data() + p * of_plane + line;
+                        const Index end = std::min(line + kLines, sizes[0]);
+                        if (end - line == kLines && near.transform(at, size, stride)) {
+                            line = end;
+                            continue;
+                        }
+                        for (; line < end; ++line) {
+                            parabolas.transform(at++, size, stride);
+                        }
                     }
                 },
                 Index{1});
@@ -116,8 +194,8 @@ std::vector<std::int32_t> squared_depths(const std::array<Index, 3>& sizes, std:
                 }
             },
             Index{1});
-        along(sizes[1], width, sizes[2], sizes[0], plane, 1);
-        along(sizes[2], plane, sizes[1], sizes[0], width, 1);
+        along(sizes[1], width, sizes[2], plane);
+        along(sizes[2], plane, sizes[1], width);
         return depths;
     });
 }

@@ -23,6 +23,8 @@ _PROCESS = 120_000_000
 _VOXEL = 16
 _VALUE = 5
 _CROSSING = 4500
+_THICKNESS = 12  # of each voxel of an array where the thickness alone is wanted
+_DEPTHS = 10  # and where depths are found
 _CHOICES = (512, 384, 256, 192, 128, 96, 64, 32)  # sizes of blocks, in voxels
 _ROUND = 1e-9
 
@@ -86,8 +88,10 @@ class DepthMap:
                 break
             depth = around
         extents = [min(b + halo, n) - max(a - halo, 0) + 2 for a, b, n in zip(low, high, self.sizes)]
-        crossings = 0 if scale is None else int(self.crossings[self._at(low, high, halo)].sum())
         voxels = math.prod(extents)
+        if scale is None:
+            return Block(low, high, halo, depth, _PROCESS + _THICKNESS * voxels)
+        crossings = int(self.crossings[self._at(low, high, halo)].sum())
         memory = _PROCESS + max(_VOXEL * voxels, _VALUE * voxels + _CROSSING * crossings)
         return Block(low, high, halo, depth, memory)
 
@@ -112,5 +116,5 @@ def halo_of_thickness(depth: float) -> int:
 
 
 def first_edge(memory: int) -> int:
-    """Of the blocks whose depths are found: arrays hold a mask and depths, and may have to grow by a halo as large."""
-    return max(CELL, min(256, int((memory / (4 * _VOXEL)) ** (1 / 3)) // CELL * CELL))
+    """Of the blocks whose depths are found: arrays may have to grow by a halo, so that four times as much is left."""
+    return max(CELL, min(_CHOICES[0], int((memory / (4 * _DEPTHS)) ** (1 / 3)) // CELL * CELL))
