@@ -163,13 +163,15 @@ class MedialComplex:
         following[lists.offsets[1:] - 1] = lists.offsets[:-1]
         sides = np.stack([lists.indices, lists.indices[following]], axis=1) if len(lists.indices) else _empty(2)
         every = np.sort(np.concatenate([sides, _arrays.indices(edges, "edges", (2,), len(places))]), axis=1)
-        unique, number = np.unique(every, axis=0, return_inverse=True)
+        # Pairs in one number: rows take numpy ten times as long.
+        pairs = every[:, 0].astype(np.int64) << 32 | every[:, 1]
+        unique, number = np.unique(pairs, return_inverse=True)
         count = len(lists)
         return label_sheets(
             MedialComplex(
                 vertices=places,
                 radii=_arrays.scalars(radii, "radii", len(places)),
-                edges=unique.astype(np.int32),
+                edges=np.stack([unique >> 32, unique & 0xFFFFFFFF], axis=1).astype(np.int32),
                 faces=lists,
                 face_edges=number.reshape(-1)[: len(sides)].astype(np.int32),
                 face_angles=np.zeros(count),

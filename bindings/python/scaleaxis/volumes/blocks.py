@@ -132,6 +132,23 @@ def _core_of(task: Task, array: npt.NDArray[Any], low: npt.NDArray[np.int64]) ->
     return array[tuple(at[::-1])]
 
 
+def _cells_around(inside: npt.NDArray[Any], shape: tuple[int, ...]) -> list[slice] | None:
+    """The box of cells, in an array of this shape, with all that is inside and the voxels before; None if that is none."""
+    box = []
+    for axis, size in enumerate(shape):
+        found = np.flatnonzero(inside.any(axis=tuple({0, 1, 2} - {axis})))
+        if not len(found):
+            return None
+        first, last = max(0, int(found[0]) - 1), int(found[-1])
+        box.append(slice(first // CELL * CELL, min((last // CELL + 1) * CELL, size)))
+    return box
+
+
+def _part_of_core(task: Task, box: list[slice]) -> Task:
+    x, y, z = ((a + at.start, a + at.stop) for a, at in zip(task.low, box[::-1]))
+    return task._replace(low=(x[0], y[0], z[0]), high=(x[1], y[1], z[1]))
+
+
 def _labels(values: npt.NDArray[Any], low: Triple) -> dict[str, list[int]]:
     """Of each label its voxels and the box around them."""
     if values.dtype.kind not in "iu":
@@ -163,10 +180,18 @@ def _depths(task: Task) -> dict[str, Any]:
     """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges."""
     source = task.source
     labels = {}
+    values, _ = _array(source, *_limits(task, 0))
+    shape = tuple(b - a for a, b in zip(task.low, task.high))[::-1]
     if source.level is None:
-        labels = _labels(source.read(task.low, task.high), task.low)
-    if not _padded_mask(task, 0)[0].any():
+        known = _cells_around(values != 0, shape)
+        if known is not None:
+            core_values = values[tuple(slice(size) for size in shape)]
+            labels = _labels(core_values[tuple(known)], _part_of_core(task, known).low)
+    box = _cells_around(_mask(source, values), shape)
+    if box is None:
         return {"cells": [], "labels": labels}
+    del values
+    task = _part_of_core(task, box)
     halo = _FIRST_HALO
     while True:
         mask, low = _padded_mask(task, halo)
