@@ -30,10 +30,10 @@ from ..files import write_axis
 from ..stages import clean as clean_axis
 from ..stages import filter as filter_axis
 from ..stages import topology
-from .blocks import Options, Task, part_name, peak_memory, polygons_name
+from .blocks import Options, Task, blocks_of, merged_labels, part_name, peak_memory, polygons_name
 from .formats import NANOMETRES
 from .neuroglancer import write_precomputed
-from .plan import Block, DepthMap, blocks_of, first_edge
+from .plan import Block, DepthMap, first_edge
 from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
 from .worker import UNWRITTEN, Row, compute, known_row, stop_all
@@ -45,6 +45,7 @@ _MOST_FACES = 5_000_000  # of which Betti numbers are computed: seconds, beside 
 _ROOM = "make room or let it be written, and call again: what is done stays"
 # Bytes a face. Measured on axes of 200,000 and 600,000 faces: 457 stitched, 499 with the filter, 886 with cleaning.
 _STITCHED, _CLEANED = 550, 950
+_TOGETHER = 512  # voxels along an axis: within them depths are found by one process, a second or several for each
 _FINEST = 0.01  # voxels: the step of thickness, if the largest fits into 16 bits
 
 
@@ -154,17 +155,11 @@ class _Runs:
 
 def _table(rows: list[Row], spacing: float) -> str:
     """Of each label its voxels, its volume, and the box around it."""
-    merged: dict[int, list[int]] = {}
-    for row in rows:
-        for label, (count, *box) in row["labels"].items():
-            known = merged.setdefault(int(label), [0, *box])
-            known[0] += count
-            known[1:4] = map(min, known[1:4], box[:3])
-            known[4:] = map(max, known[4:], box[3:])
+    merged = merged_labels(row["labels"] for row in rows)
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["label", "voxels", "volume", "low_x", "low_y", "low_z", "high_x", "high_y", "high_z"])
-    for label in sorted(merged):
+    for label in sorted(merged, key=int):
         count, *box = merged[label]
         writer.writerow([label, count, f"{count * spacing**3:.9g}", *box])
     return text.getvalue()
@@ -356,7 +351,9 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
 
     unused = Options(1.0, 0, 0, 0.0)  # depths are those of voxels
     first = first_edge(share)
-    depth_rows = runs.rows([task("depths", low, high, unused, 0) for low, high in blocks_of(source.sizes, first)])
+    together = max(first, _TOGETHER // first * first)
+    places = blocks_of((0, 0, 0), source.sizes, together)
+    depth_rows = runs.rows([task("depths", low, high, unused, first, edge=first) for low, high in places])
     depths = DepthMap.of(source.sizes, depth_rows)
     edge, blocks = depths.plan(options.scale if wanted.axis else None, share, block)
     largest = float(depths.depths.max())

@@ -4,9 +4,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import product
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,7 +12,7 @@ import numpy.typing as npt
 
 from .. import _core
 from ..errors import InvalidOption
-from .blocks import CELL
+from .blocks import CELL, blocks_of
 from .sources import Triple
 
 # Bytes, measured with bench/bench_volumes and rounded up: of a process; of each voxel of an array while its values are
@@ -35,12 +33,6 @@ class Block(NamedTuple):
     halo: int
     largest_depth: float  #: of what it depends on
     memory: int
-
-
-def blocks_of(sizes: Triple, edge: int) -> Iterator[tuple[Triple, Triple]]:
-    for z, y, x in product(*(range(0, size, edge) for size in sizes[::-1])):
-        low = (x, y, z)
-        yield low, tuple(min(a + edge, size) for a, size in zip(low, sizes))  # type: ignore[misc]
 
 
 @dataclass(frozen=True)
@@ -98,7 +90,7 @@ class DepthMap:
     def plan(self, scale: float | None, memory: int, edge: int | None) -> tuple[int, list[Block]]:
         """The size of blocks and those that are not empty. Raises InvalidOption if one needs more than `memory`."""
         for size in (edge,) if edge else _CHOICES:
-            found = (self.block(low, high, scale) for low, high in blocks_of(self.sizes, size))
+            found = (self.block(low, high, scale) for low, high in blocks_of((0, 0, 0), self.sizes, size))
             blocks = [block for block in found if block is not None]
             most = max((block.memory for block in blocks), default=0)
             if most <= memory:
