@@ -168,6 +168,83 @@ TEST(Volume, ThicknessOfABallIsItsDiameter) {
     }
 }
 
+// More than a tile in each direction, deep and shallow; and of a core alone.
+TEST(Volume, ThicknessIsThatOfBruteForce) {
+    const std::array<Index, 3> sizes{75, 38, 36};
+    const auto wave = [](Index i, Index period) { return std::abs(i % (2 * period) - period); };
+    const Mask mask = mask_of(sizes, [&](Index i, Index j, Index k) {
+        return wave(i, 19) + wave(j, 13) + wave(k, 11) > 15 && (i + 2 * j + 3 * k) % 41 != 0;
+    });
+    const std::vector<std::int32_t> depths = squared_depths(sizes, mask.values);
+    std::vector<std::int32_t> largest(depths.size());
+    for (Index k = 0; k < sizes[2]; ++k) {
+        for (Index j = 0; j < sizes[1]; ++j) {
+            for (Index i = 0; i < sizes[0]; ++i) {
+                const std::int32_t depth = depths[mask.place(i, j, k)];
+                for (Index z = 0; z < sizes[2]; ++z) {
+                    for (Index y = 0; y < sizes[1]; ++y) {
+                        const Index away = (z - k) * (z - k) + (y - j) * (y - j);
+                        for (Index x = 0; away < depth && x < sizes[0]; ++x) {
+                            if (away + (x - i) * (x - i) < depth) {
+                                std::int32_t& here = largest[mask.place(x, y, z)];
+                                here = std::max(here, depth);
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+    EXPECT_GT(*std::ranges::max_element(largest), 15);
+    const std::array<Index, 3> low{5, 3, 0};
+    const std::array<Index, 3> high{75, 37, 30};
+    const VolumeBlock whole{sizes, {0, 0, 0}, {0, 0, 0}, {75, 38, 36}, {75, 38, 36}};
+    const VolumeBlock part{sizes, {0, 0, 0}, {5, 3, 0}, {75, 37, 30}, {75, 38, 36}};
+    const std::vector<float> all = thickness_of_block(whole, mask.values);
+    const std::vector<float> of_core = thickness_of_block(part, mask.values);
+    std::size_t n = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        ASSERT_FLOAT_EQ(all[i], 2.0F * std::sqrt(static_cast<float>(largest[i])));
+    }
+    for (Index k = low[2]; k < high[2]; ++k) {
+        for (Index j = low[1]; j < high[1]; ++j) {
+            for (Index i = low[0]; i < high[0]; ++i) {
+                ASSERT_EQ(of_core[n++], all[mask.place(i, j, k)]);
+            }
+        }
+    }
+}
+
+// Deeper than what is found step by step, and wider than the lines that are taken together.
+TEST(Volume, DepthsOfDeepSolidsAreThoseOfBruteForce) {
+    const std::array<Index, 3> sizes{50, 45, 47};
+    const Mask mask = mask_of(sizes, [](Index i, Index j, Index k) { return (i * j + 3 * k) % 1999 != 7; });
+    const std::vector<std::int32_t> depths = squared_depths(sizes, mask.values);
+    std::vector<std::array<Index, 3>> outside;
+    for (Index k = 0; k < sizes[2]; ++k) {
+        for (Index j = 0; j < sizes[1]; ++j) {
+            for (Index i = 0; i < sizes[0]; ++i) {
+                if (mask.values[mask.place(i, j, k)] == 0) {
+                    outside.push_back({i, j, k});
+                }
+            }
+        }
+    }
+    ASSERT_FALSE(outside.empty());
+    for (Index k = 0; k < sizes[2]; ++k) {
+        for (Index j = 0; j < sizes[1]; ++j) {
+            for (Index i = 0; i < sizes[0]; ++i) {
+                std::int32_t least = std::numeric_limits<std::int32_t>::max();
+                for (const auto& [x, y, z] : outside) {
+                    least = std::min(least, (x - i) * (x - i) + (y - j) * (y - j) + (z - k) * (z - k));
+                }
+                ASSERT_EQ(depths[mask.place(i, j, k)], least);
+            }
+        }
+    }
+    EXPECT_GT(*std::ranges::max_element(depths), 17 * 17);
+}
+
 TEST(Volume, RefusesWhatDoesNotFit) {
     const std::vector<float> values(27, 1.0F);
     EXPECT_THROW(axis_of_block({{3, 3, 3}, {0, 0, 0}, {0, 0, 0}, {4, 3, 3}, {9, 9, 9}}, values, {}), InvalidOption);
