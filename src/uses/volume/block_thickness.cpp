@@ -10,15 +10,15 @@
 #include "base/parallel.hpp"
 #include "scaleaxis/volume.hpp"
 
-// Of the balls around all voxels those that another one contains paint nothing. The others are sorted into tiles of the
-// array. A tile of the core takes those that reach it, the largest first, so that each voxel is written once, and stops
-// as soon as all are. What is left to write is a bit a voxel, so that a row of a ball takes one operation.
+// Of the balls around all voxels, those that another one contains paint nothing. The others are sorted into tiles of
+// the array. A tile of the core takes those that reach it, the largest first, so that each voxel is written once, and
+// stops as soon as all are. What is left to write is a bit a voxel, so that a row of a ball takes one operation.
 
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Voxels of a tile: a word along x. Along y and z, half as much meets many balls twice, twice as much fills more than
-// the fastest cache.
+// Voxels of a tile: a word along x. Along y and z, half or twice as much takes as long: fewer balls are met twice, but
+// more rows have to stay in the fastest cache.
 constexpr std::array<Index, 3> kTile{64, 32, 32};
 
 constexpr std::int32_t kUnboundedDepth = std::numeric_limits<std::int32_t>::max();
@@ -126,8 +126,7 @@ class BallPainting {
         for (Index n = 0; n < 27; ++n) {
             const Place step{n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
             const Index steps = std::abs(step[0]) + std::abs(step[1]) + std::abs(step[2]);
-            neighbors_.push_back(
-                {step, steps, (std::ptrdiff_t{step[2]} * sizes_[1] + step[1]) * sizes_[0] + step[0]});
+            neighbors_.push_back({step, steps, (std::ptrdiff_t{step[2]} * sizes_[1] + step[1]) * sizes_[0] + step[0]});
         }
         std::ranges::stable_sort(neighbors_, {}, &Neighbor::steps);
         neighbors_.erase(neighbors_.begin());  // itself
@@ -142,9 +141,11 @@ class BallPainting {
         }
         roots_ = square_roots(largest_);
         const ContainingDepths containing = containing_depths(largest_);
-        for_each_index(array_.size(), [&](Index tile) { balls_[tile] = balls_of(array_[tile], containing); }, Index{1});
+        for_each_index(
+            array_.size(), [&](Index tile) { balls_[tile] = balls_of(array_[tile], containing); }, Index{1});
         const Tiles core(core_);
-        for_each_index(core.size(), [&](Index tile) { paint(core[tile], result); }, Index{1});
+        for_each_index(
+            core.size(), [&](Index tile) { paint(core[tile], result); }, Index{1});
         return result;
     }
 
@@ -210,70 +211,81 @@ class BallPainting {
         return balls;
     }
 
-    void paint(const VoxelBox& tile, std::vector<float>& result) const {
-        std::array<std::uint64_t, std::size_t{kTile[1]} * kTile[2]> left{};  // voxels to write, a bit each
-        std::size_t count = 0;
-        const Index rows = tile.high[1] - tile.low[1];
+    /// Of a tile the voxels inside that are not written yet: a word for each row along x, a bit for each voxel.
+    struct Unwritten {
+        VoxelBox tile;
+        std::array<std::uint64_t, std::size_t{kTile[1]} * kTile[2]> words{};
+        std::int64_t count = 0;
+
+        std::uint64_t& row(Index j, Index k) { return words[(k - tile.low[2]) * kTile[1] + j - tile.low[1]]; }
+    };
+
+    Unwritten unwritten_of(const VoxelBox& tile) const {
+        Unwritten left{tile};
         for (Index k = tile.low[2]; k < tile.high[2]; ++k) {
             for (Index j = tile.low[1]; j < tile.high[1]; ++j) {
-                std::uint64_t& word = left[(k - tile.low[2]) * rows + j - tile.low[1]];
                 for (Index i = tile.low[0]; i < tile.high[0]; ++i) {
                     const std::uint64_t is_inside = depths_[place(i, j, k)] > 0 ? 1 : 0;
-                    word |= is_inside << (i - tile.low[0]);
-                    count += is_inside;
+                    left.row(j, k) |= is_inside << (i - tile.low[0]);
+                    left.count += static_cast<std::int64_t>(is_inside);
                 }
             }
         }
-        if (count == 0) {
+        return left;
+    }
+
+    /// Those of a row that are not written yet and lie between two voxels of the tile.
+    void write(Unwritten& left, Index begin, Index end, Index j, Index k, float value, std::vector<float>& out) const {
+        std::uint64_t& word = left.row(j, k);
+        const Index first = left.tile.low[0];
+        std::uint64_t written = word & (~std::uint64_t{0} >> (64 - (end - begin)) << (begin - first));
+        word ^= written;
+        const std::size_t line =
+            static_cast<std::size_t>(k - core_.low[2]) * (core_.high[1] - core_.low[1]) + j - core_.low[1];
+        float* row = out.data() + line * (core_.high[0] - core_.low[0]) + (first - core_.low[0]);
+        for (; written != 0; written &= written - 1, --left.count) {
+            row[std::countr_zero(written)] = value;
+        }
+    }
+
+    void paint_ball(const VoxelBall& ball, Unwritten& left, std::vector<float>& out) const {
+        const auto& [low, high] = left.tile;
+        const auto& [x, y, z] = ball.center;
+        const float diameter = 2.0F * std::sqrt(static_cast<float>(ball.depth));
+        const Index reach = roots_[ball.depth - 1];
+        for (Index k = std::max(z - reach, low[2]); k < std::min(z + reach + 1, high[2]); ++k) {
+            for (Index j = std::max(y - reach, low[1]); j < std::min(y + reach + 1, high[1]); ++j) {
+                const std::int64_t in_row = ball.depth - squared(k - z) - squared(j - y);
+                if (left.row(j, k) == 0 || in_row <= 0) {
+                    continue;
+                }
+                const Index half = roots_[in_row - 1];
+                const Index begin = std::max(x - half, low[0]);
+                const Index end = std::min(x + half + 1, high[0]);
+                if (begin < end) {
+                    write(left, begin, end, j, k, diameter, out);
+                }
+            }
+        }
+    }
+
+    void paint(const VoxelBox& tile, std::vector<float>& out) const {
+        Unwritten left = unwritten_of(tile);
+        if (left.count == 0) {
             return;
         }
         const auto is_smaller = [](const VoxelBall& a, const VoxelBall& b) { return a.depth < b.depth; };
         std::vector<VoxelBall> balls = balls_near(tile);
         std::ranges::make_heap(balls, is_smaller);
-        const std::ptrdiff_t width = core_.high[0] - core_.low[0];
-        const std::ptrdiff_t height = core_.high[1] - core_.low[1];
-        const auto row_of = [&](Index i, Index j, Index k) {
-            return result.data() + ((k - core_.low[2]) * height + j - core_.low[1]) * width + (i - core_.low[0]);
-        };
-        while (count > 0 && !balls.empty()) {
+        while (left.count > 0 && !balls.empty()) {
             std::ranges::pop_heap(balls, is_smaller);
-            const auto& [depth, center] = balls.back();
-            const float diameter = 2.0F * std::sqrt(static_cast<float>(depth));
-            const Index reach = roots_[depth - 1];
-            for (Index k = std::max(center[2] - reach, tile.low[2]); k < std::min(center[2] + reach + 1, tile.high[2]);
-                 ++k) {
-                const std::int64_t in_plane = depth - squared(k - center[2]);
-                for (Index j = std::max(center[1] - reach, tile.low[1]);
-                     j < std::min(center[1] + reach + 1, tile.high[1]); ++j) {
-                    std::uint64_t& word = left[(k - tile.low[2]) * rows + j - tile.low[1]];
-                    const std::int64_t in_row = in_plane - squared(j - center[1]);
-                    if (word == 0 || in_row <= 0) {
-                        continue;
-                    }
-                    const Index half = roots_[in_row - 1];
-                    const Index begin = std::max(center[0] - half, tile.low[0]) - tile.low[0];
-                    const Index end = std::min(center[0] + half + 1, tile.high[0]) - tile.low[0];
-                    if (begin >= end) {
-                        continue;
-                    }
-                    std::uint64_t written = word & (~std::uint64_t{0} >> (64 - (end - begin)) << begin);
-                    word ^= written;
-                    float* row = row_of(tile.low[0], j, k);
-                    for (; written != 0; written &= written - 1, --count) {
-                        row[std::countr_zero(written)] = diameter;
-                    }
-                }
-            }
+            paint_ball(balls.back(), left, out);
             balls.pop_back();
         }
-        // Nothing contains the others but their own ball.
-        for (Index k = tile.low[2]; count > 0 && k < tile.high[2]; ++k) {
+        // In the others is no ball but their own, of a single voxel.
+        for (Index k = tile.low[2]; left.count > 0 && k < tile.high[2]; ++k) {
             for (Index j = tile.low[1]; j < tile.high[1]; ++j) {
-                std::uint64_t word = left[(k - tile.low[2]) * rows + j - tile.low[1]];
-                float* row = row_of(tile.low[0], j, k);
-                for (; word != 0; word &= word - 1) {
-                    row[std::countr_zero(word)] = 2.0F;
-                }
+                write(left, tile.low[0], tile.high[0], j, k, 2.0F, out);
             }
         }
     }
