@@ -136,7 +136,7 @@ def _core_of(task: Task, array: npt.NDArray[Any], low: npt.NDArray[np.int64]) ->
 
 
 def _cells_around(inside: npt.NDArray[Any], shape: tuple[int, ...]) -> list[slice] | None:
-    """The box of cells, in an array of this shape, with all that is inside and the voxels before; None if that is none."""
+    """The box of cells, in an array of this shape, of all that is inside and the voxels before it; None if nothing is."""
     box = []
     for axis, size in enumerate(shape):
         found = np.flatnonzero(inside.any(axis=tuple({0, 1, 2} - {axis})))
@@ -197,13 +197,14 @@ def blocks_of(low: Triple, high: Triple, edge: int) -> Iterator[tuple[Triple, Tr
 
 
 def _depths(task: Task) -> dict[str, Any]:
-    """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges. Empty space takes
-    less time than a process: one does many blocks, one after the other.
+    """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges. Empty space
+    takes less time than a process: one does many blocks, one after the other.
     """
     rows = [
         _depths_of_block(task._replace(low=low, high=high)) for low, high in blocks_of(task.low, task.high, task.edge)
     ]
-    return {"cells": [cell for row in rows for cell in row["cells"]], "labels": merged_labels(r["labels"] for r in rows)}
+    cells = [cell for row in rows for cell in row["cells"]]
+    return {"cells": cells, "labels": merged_labels(row["labels"] for row in rows)}
 
 
 def _depths_of_block(task: Task) -> dict[str, Any]:
