@@ -17,8 +17,7 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Voxels of a tile: a word along x. Along y and z, half or twice as much takes as long: fewer balls are met twice, but
-// more rows have to stay in the fastest cache.
+// Voxels of a tile: a word along x. Half as much along y and z takes as long: more balls are met twice.
 constexpr std::array<Index, 3> kTile{64, 32, 32};
 
 constexpr std::int32_t kUnboundedDepth = std::numeric_limits<std::int32_t>::max();

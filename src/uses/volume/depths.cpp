@@ -74,7 +74,7 @@ class Parabolas {
 /// As many lines side by side, which the compiler's vector operations take together: a line of the cache.
 constexpr Index kLines = 16;
 
-/// Where the solid is deeper the parabolas are faster: a step costs 1 ns a voxel, they cost 15 to 20.
+/// Where the solid is deeper, parabolas, whose time does not depend on the depth. An estimate of where both are equal.
 constexpr Index kMostSteps = 16;
 
 constexpr std::int32_t kFar = 1 << 30;  // more than any squared distance in an array, and small enough to add to
