@@ -176,18 +176,29 @@ class Contraction {
         return is_any_changed;
     }
 
-    // The triangles at the vertices of some faces, if any is left, that are less high than `height`.
-    std::vector<Index> faces_at(std::span<const Index> faces, double height) const {
+    // The faces at the vertices of some.
+    std::vector<Index> faces_at(std::span<const Index> faces) const {
         std::vector<Index> result;
         for (const Index f : faces) {
             for (const Index v : corners_of(f)) {
-                std::ranges::copy_if(star(v), std::back_inserter(result), [&](Index cell) {
-                    return sizes_[cell] == 3 && height_of(corners_of(cell)) < height;
-                });
+                std::ranges::copy_if(star(v), std::back_inserter(result),
+                                     [&](Index cell) { return cell < static_cast<Index>(complex_.faces.size()); });
             }
         }
         std::ranges::sort(result);
         result.erase(std::unique(result.begin(), result.end()), result.end());
+        return result;
+    }
+
+    bool is_any_left(std::span<const Index> faces) const {
+        return std::ranges::any_of(faces, [&](Index f) { return sizes_[f] != 0; });
+    }
+
+    // Those of some faces that are triangles less high than `height`.
+    std::vector<Index> flat_ones(std::span<const Index> faces, double height) const {
+        std::vector<Index> result;
+        std::ranges::copy_if(faces, std::back_inserter(result),
+                             [&](Index f) { return sizes_[f] == 3 && height_of(corners_of(f)) < height; });
         return result;
     }
 
@@ -388,18 +399,23 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     complex = with_triangles_at(vertices_of_slivers(slivers, complex), complex);
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
+    std::vector<std::vector<Index>> faces_around;
+    std::ranges::transform(slivers, std::back_inserter(faces_around),
+                           [&](const Sliver& sliver) { return contraction.faces_at(faces_of[sliver.sheet]); });
     for (bool is_changed = true; is_changed;) {  // what one leaves behind, others may free
         is_changed = false;
-        for (const Sliver& sliver : slivers) {
+        for (std::size_t k = 0; k < slivers.size(); ++k) {
+            const auto& [area, sheet, width] = slivers[k];
             // Across first; where that would change the homotopy type, along. Other sheets may stand in the way, with
             // edges as short, or with triangles as flat as a folded seam makes them.
             constexpr double kAny = std::numeric_limits<double>::infinity();
-            const std::span<const Index> faces = faces_of[sliver.sheet];
             for (const auto& [length, height] :
-                 {std::pair(sliver.width, kAny), std::pair(kMostEdge * sliver.width, sliver.width / kMostEdge)}) {
+                 {std::pair(width, kAny), std::pair(kMostEdge * width, width / kMostEdge)}) {
                 const auto size_of = [size = length](Index, Index) { return size; };
-                is_changed |= contraction.contract(faces, size_of);
-                is_changed |= contraction.contract(contraction.faces_at(faces, height), size_of);
+                is_changed |= contraction.contract(faces_of[sheet], size_of);
+                if (contraction.is_any_left(faces_of[sheet])) {
+                    is_changed |= contraction.contract(contraction.flat_ones(faces_around[k], height), size_of);
+                }
             }
         }
     }
