@@ -110,6 +110,13 @@ Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
         outputs.push_back(file);
     }
     const std::vector<fs::path> files = outputs;
+    if (!has_mesh) {
+        for (const fs::path& file : files) {
+            if (extension_of(file, options.output_format) == ".sol") {
+                outputs.push_back(fs::path(file).replace_extension(".mesh"));
+            }
+        }
+    }
     check_all_outputs(sources, outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document("scaleaxis.sizes/1"), cancel,
                        [&](std::size_t i, const Listener& listener) {
