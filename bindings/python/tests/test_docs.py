@@ -79,9 +79,12 @@ def test_task(page, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(ROOT / "data/cat.obj", tmp_path)
     cat = scaleaxis.read_mesh("cat.obj")
-    for name in ("part.stl", "link.stl", "shell.stl"):
+    for name in ("part.stl", "link.stl", "shell.stl", "neuron.ply", "oak.ply"):
         scaleaxis.write_mesh(name, cat)
     scaleaxis.write_mesh("bracket.stl", plate())  # a cat has no walls
+    corners, triangles = plate()
+    corners = (corners - corners.min(axis=0)) / np.ptp(corners, axis=0)
+    scaleaxis.write_mesh("aorta.stl", (corners * [20, 100, 20] + [210, 85, 16], triangles))  # a bar where the vessel is
     (tmp_path / "robot.urdf").write_text(ROBOT)
     axis = scaleaxis.axis(cat)
     scaleaxis.write_axis("axis.ma", scaleaxis.axis(cat, scale=1, clean=0, sharp=False).complex)

@@ -27,6 +27,8 @@ from scaleaxis.batch.progress import Counts
 from scaleaxis.volumes import Report, volume
 from scaleaxis.volumes.worker import DEBUG
 
+pytestmark = pytest.mark.filterwarnings("ignore:trees have no loops")  # of which SWC files are made
+
 OPTIONS: dict[str, Any] = {"block": 32, "memory": "8GB", "thickness": True, "angle": 30.0, "skeleton": True}
 WORDS = ["--block", "32", "--memory", "8GB", "--thickness", "--angle", "30", "--skeleton", "-q"]
 CODE = "import sys; from scaleaxis.batch.command import main; sys.exit(main(sys.argv[1:]))"

@@ -19,6 +19,8 @@ import tensorstore
 import zarr
 from scaleaxis.volumes import Report, volume
 
+pytestmark = pytest.mark.filterwarnings("ignore:trees have no loops")  # of which SWC files are made
+
 SPACING, ORIGIN = 0.5, (10.0, 20.0, 30.0)  # micrometres; x, y, z
 
 

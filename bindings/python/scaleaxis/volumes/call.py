@@ -353,7 +353,7 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
     first = first_edge(share)
     together = max(first, _TOGETHER // first * first)
     places = blocks_of((0, 0, 0), source.sizes, together)
-    depth_rows = runs.rows([task("depths", low, high, unused, first, edge=first) for low, high in places])
+    depth_rows = runs.rows([task("depths", low, high, unused, 0, edge=first) for low, high in places])
     depths = DepthMap.of(source.sizes, depth_rows)
     edge, blocks = depths.plan(options.scale if wanted.axis else None, share, block)
     largest = float(depths.depths.max())
