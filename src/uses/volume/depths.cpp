@@ -77,7 +77,7 @@ constexpr Index kLines = 16;
 /// Where the solid is deeper, parabolas, whose time does not depend on the depth. An estimate of where both are equal.
 constexpr Index kMostSteps = 16;
 
-constexpr std::int32_t kBeyond = 1 << 30;  // more than any squared distance in an array, and small enough to add to
+constexpr std::int32_t kOutOfReach = 1 << 30;  // more than any squared distance in an array, and small enough to add to
 
 /// Beside each other; looks at all places that are near enough to matter, one after the other.
 class NearLines {
@@ -88,7 +88,7 @@ class NearLines {
     bool transform(std::int32_t* at, Index size, std::ptrdiff_t stride) {
         for (Index i = 0; i < size; ++i) {
             for (Index n = 0; n < kLines; ++n) {
-                values_[i][n] = std::min(at[i * stride + n], kBeyond);
+                values_[i][n] = std::min(at[i * stride + n], kOutOfReach);
             }
         }
         for (Index i = 0; i < size; ++i) {
@@ -132,7 +132,7 @@ class NearLines {
     void restore(std::int32_t* at, Index size, std::ptrdiff_t stride) const {
         for (Index i = 0; i < size; ++i) {
             for (Index n = 0; n < kLines; ++n) {
-                at[i * stride + n] = values_[i][n] == kBeyond ? kNoneOutside : values_[i][n];
+                at[i * stride + n] = values_[i][n] == kOutOfReach ? kNoneOutside : values_[i][n];
             }
         }
     }
