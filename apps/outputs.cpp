@@ -137,11 +137,16 @@ void check_output(const fs::path& file, const OutputCheck& check) {
     }
 }
 
+namespace {
+
+/// The extension of the format of a file, in lower case and with its dot. \param format as `written_format` has it
 std::string extension_of(const fs::path& file, const std::string& format) {
     std::string extension = format.empty() ? file.extension().string() : "." + format;
     std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
     return extension;
 }
+
+}  // namespace
 
 OutputCheck axis_output_check(const std::string& format, bool has_polygons) {
     return [=](const fs::path& file) {

@@ -45,9 +45,6 @@ void check_distinct(const std::vector<std::filesystem::path>& inputs,
 /// Throws `FileError` if a file cannot be written.
 using OutputCheck = std::function<void(const std::filesystem::path&)>;
 
-/// The extension of the format of a file, in lower case and with its dot. \param format as `written_format` has it
-std::string extension_of(const std::filesystem::path& file, const std::string& format);
-
 /// The check of a file that is written in its `written_format`.
 template <class Check>
 OutputCheck with_format(const Check& check, const std::string& format, const std::string& otherwise = "ply") {

@@ -95,7 +95,8 @@ SourceResult run_sizes_of(const SizesCommandOptions& options, const Source& sour
 
 Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
-    std::vector<fs::path> outputs;
+    std::vector<fs::path> files;
+    std::vector<fs::path> meshes;  // that are written beside
     const bool has_mesh = !options.mesh.empty();
     if (has_mesh && !options.output_format.empty()) {
         throw InvalidOption("--at writes a .sol: it goes without --output-format");
@@ -107,16 +108,17 @@ Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
         if (has_mesh && file.extension() != ".sol") {
             throw InvalidOption("--at writes a .sol, and not " + file.string());
         }
-        outputs.push_back(file);
-    }
-    const std::vector<fs::path> files = outputs;
-    if (!has_mesh) {
-        for (const fs::path& file : files) {
-            if (extension_of(file, options.output_format) == ".sol") {
-                outputs.push_back(fs::path(file).replace_extension(".mesh"));
+        files.push_back(file);
+        if (const auto mesh = mesh_beside_sizes(file, written_format(file, options.output_format, "pos"));
+            mesh && !has_mesh) {
+            if (is_stdout(file)) {
+                throw InvalidOption("a .sol has its mesh beside it: write it to a file");
             }
+            meshes.push_back(*mesh);
         }
     }
+    std::vector<fs::path> outputs = files;
+    outputs.insert(outputs.end(), meshes.begin(), meshes.end());
     check_all_outputs(sources, outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document("scaleaxis.sizes/1"), cancel,
                        [&](std::size_t i, const Listener& listener) {

@@ -1991,6 +1991,9 @@ TEST_F(CommandLine, SizesGoToFilesOfMeshers) {
     EXPECT_EQ(run({"sizes", "plate.off", "-o", "a.pos", "--gradation", "0"}).status, 2);
     EXPECT_EQ(run({"sizes", "plate.off", "-o", "a.pos", "--min-size", "2", "--max-size", "1"}).status, 2);
 
+    expect_error_line(run({"sizes", "plate.off", "-o", "-", "--output-format", "sol"}),
+                      "a .sol has its mesh beside it");
+
     // What is written beside is no input.
     std::filesystem::copy(folder_ / "plate.off", folder_ / "plate.mesh");
     expect_error_line(run({"sizes", "plate.mesh", "-o", "plate.sol"}), "plate.mesh");

@@ -232,6 +232,10 @@ SCALEAXIS_EXPORT void write_sizes(const std::filesystem::path& file, const SizeF
 SCALEAXIS_EXPORT void check_sizes_output(const std::filesystem::path& file,
                                          std::string_view format = {});  ///< as above
 
+/// The mesh of the same name that is written beside a .sol, where programs look for it; of other formats none.
+SCALEAXIS_EXPORT std::optional<std::filesystem::path> mesh_beside_sizes(const std::filesystem::path& file,
+                                                                        std::string_view format = {});
+
 /// The .sol of a mesh that is there already, as one of tetrahedra for mmg3d. \param mesh in Medit's text format (.mesh)
 /// \throws FileError, Cancelled
 SCALEAXIS_EXPORT void write_sizes_at(const std::filesystem::path& file, const SizeField& sizes,

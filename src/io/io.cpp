@@ -246,9 +246,6 @@ void write(const path& file, std::string_view format, Function Format::*member, 
     out.commit();
 }
 
-/// The mesh that a .sol belongs to: programs look for one of the same name.
-path medit_beside(const path& sol) { return path(sol).replace_extension(".mesh"); }
-
 /// Are there as many values as vertices, under names that files have no other use for?
 void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all) {
     constexpr std::array<std::string_view, 7> kTaken{"x", "y", "z", "radius", "ball", "label", "Points"};
@@ -621,7 +618,7 @@ void write_image(const path& file, const Image& image, std::string_view format) 
 
 std::vector<Diagnostic> write_skeleton(const path& file, const Skeleton& skeleton, std::string_view format) {
     write(file, format, &Format::write_skeleton, skeleton);
-    WriteSkeleton* const writer = select_output(file, format, &Format::write_skeleton).write_skeleton;
+    WriteSkeleton* const writer = select_writer(file, format, &Format::write_skeleton);
     const bool has_trees = writer == write_swc_skeleton || writer == write_csv_skeleton;
     return has_trees ? tree_warnings(skeleton) : std::vector<Diagnostic>();
 }
@@ -645,10 +642,15 @@ void write_shells(const path& file, const ShellMesh& shells, const ShellFileOpti
     out.commit();
 }
 
+std::optional<path> mesh_beside_sizes(const path& file, std::string_view format) {
+    const bool has_mesh = select_writer(file, format, &Format::write_sizes) == write_sol_sizes;
+    return has_mesh ? std::optional(path(file).replace_extension(".mesh")) : std::nullopt;
+}
+
 void write_sizes(const path& file, const SizeField& sizes, std::string_view format, const Execution& execution) {
     std::optional<OutputFile> surface;
-    if (select_writer(file, format, &Format::write_sizes) == write_sol_sizes) {
-        write_medit_surface(surface.emplace(medit_beside(file)), sizes.surface());
+    if (const std::optional<path> mesh = mesh_beside_sizes(file, format)) {
+        write_medit_surface(surface.emplace(*mesh), sizes.surface());
     }
     write(file, format, &Format::write_sizes, sizes, execution);
     if (surface) {
@@ -670,8 +672,8 @@ void write_sizes_at(const path& file, const SizeField& sizes, const path& mesh, 
 
 void check_sizes_output(const path& file, std::string_view format) {
     check_output(file, format, &Format::write_sizes);
-    if (select_writer(file, format, &Format::write_sizes) == write_sol_sizes) {
-        check_output_file(medit_beside(file));
+    if (const std::optional<path> mesh = mesh_beside_sizes(file, format)) {
+        check_output_file(*mesh);
     }
 }
 
