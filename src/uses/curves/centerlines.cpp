@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <queue>
+#include <set>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -410,10 +411,11 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
             moved[n] = add(skeleton.nodes[n], skeleton.radii[n], n);
         }
     }
+    std::set<Edge> edges;
     const std::map<Edge, Index> on_branches = branches_of_edges(skeleton);
     for (const Edge& edge : skeleton.edges) {
         if (on_branches.count(edge) == 0) {
-            result.edges.push_back(ordered(moved[edge[0]], moved[edge[1]]));
+            edges.insert(ordered(moved[edge[0]], moved[edge[1]]));
         }
     }
     for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
@@ -424,8 +426,7 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
         }
         // A loop is a triangle at least, and two branches between the same junctions are not one edge.
         const Edge ends = ordered(moved[nodes.front()], moved[nodes.back()]);
-        const bool is_taken = std::ranges::find(result.edges, ends) != result.edges.end();
-        const double least = ends[0] == ends[1] ? 3.0 : is_taken ? 2.0 : 1.0;
+        const double least = ends[0] == ends[1] ? 3.0 : edges.contains(ends) ? 2.0 : 1.0;
         const double parts = std::max(least, std::ceil(ways.back() / step * (1.0 - 1e-12)));  // but for rounding
         std::vector<Index> branch{moved[nodes.front()]};
         std::size_t k = 1;
@@ -443,7 +444,7 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
         }
         branch.push_back(moved[nodes.back()]);
         for (std::size_t i = 1; i < branch.size(); ++i) {
-            result.edges.push_back(ordered(branch[i - 1], branch[i]));
+            edges.insert(ordered(branch[i - 1], branch[i]));
         }
         result.branches.push_back(branch);
         for (std::size_t i = 1; i + 1 < nodes.size(); ++i) {
@@ -453,7 +454,7 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
             }
         }
     }
-    std::ranges::sort(result.edges);
+    result.edges.assign(edges.begin(), edges.end());
     for (std::size_t f = 0; f < skeleton.faces.size(); ++f) {
         std::vector<Index> face(skeleton.faces[f].begin(), skeleton.faces[f].end());
         std::ranges::transform(face, face.begin(), [&](Index n) { return moved[n]; });
