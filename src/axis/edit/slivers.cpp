@@ -66,11 +66,16 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
     return slivers;
 }
 
-// Twice the area in squares of the longest side.
-double roundness(const Point& a, const Point& b, const Point& c) {
-    const double longest = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
-    return longest > 0.0 ? norm(cross(b - a, c - a)) / longest : 0.0;
-}
+struct TriangleShape {
+    double twice_area = 0.0;
+    double squared_length = 0.0;  // of the longest side
+
+    TriangleShape(const Point& a, const Point& b, const Point& c)
+        : twice_area(norm(cross(b - a, c - a))),
+          squared_length(std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)})) {}
+    double roundness() const { return squared_length > 0.0 ? twice_area / squared_length : 0.0; }
+    double height() const { return squared_length > 0.0 ? twice_area / std::sqrt(squared_length) : 0.0; }
+};
 
 using Flags = std::vector<std::uint8_t>;
 
@@ -108,7 +113,7 @@ MedialComplex with_triangles_at(const Flags& is_asked, const MedialComplex& comp
     MedialComplex result = vertices_of(complex);
     // Three corners on a line, as there are in seams, are cut off last.
     const auto flatness = [&](Index a, Index b, Index c) {
-        return -roundness(complex.vertices[a], complex.vertices[b], complex.vertices[c]);
+        return -TriangleShape(complex.vertices[a], complex.vertices[b], complex.vertices[c]).roundness();
     };
     for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
         const FaceValues values = values_of(complex, f);
@@ -228,10 +233,8 @@ class Contraction {
     }
 
     double height_of(std::span<const Index> corners) const {
-        const auto& [a, b, c] =
-            std::array{complex_.vertices[corners[0]], complex_.vertices[corners[1]], complex_.vertices[corners[2]]};
-        const double longest = std::max({squared_distance(a, b), squared_distance(b, c), squared_distance(c, a)});
-        return longest > 0.0 ? norm(cross(b - a, c - a)) / std::sqrt(longest) : 0.0;
+        const auto at = [&](int k) { return complex_.vertices[corners[k]]; };
+        return TriangleShape(at(0), at(1), at(2)).height();
     }
 
     void erase_corner(Index cell, Index v) {

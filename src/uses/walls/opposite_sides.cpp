@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "base/angles.hpp"
+#include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "uses/uphill.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -150,6 +152,12 @@ Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) 
 }
 
 }  // namespace
+
+void check_wall_angle(double angle) {
+    if (!kWallAngleRange.contains(angle)) {
+        throw InvalidOption("the angle between the contacts of a wall must lie between 60 and 179 degrees");
+    }
+}
 
 void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals) {
     const auto known = static_cast<Index>(normals.size());

@@ -28,6 +28,9 @@ class OutsideOf final : public Solid {
     const Solid& solid_;
 };
 
+/// \throws InvalidOption if the angle between two contacts is not in `kWallAngleRange`
+void check_wall_angle(double angle);
+
 /// Appends normals of vertices from the first that has none: the mean of those of the triangles there, by their angles.
 void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals);
 

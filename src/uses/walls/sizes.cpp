@@ -111,9 +111,7 @@ void check_options(const SizeOptions& options) {
     if (!kGradationRange.contains(options.gradation)) {
         throw InvalidOption("the gradation of sizes must lie between 0.01 and 10");
     }
-    if (!kWallAngleRange.contains(options.angle)) {
-        throw InvalidOption("the angle between the contacts of a wall must lie between 60 and 179 degrees");
-    }
+    check_wall_angle(options.angle);
 }
 
 class SizeSearch {

@@ -534,12 +534,6 @@ class WallSearch {
     Walls walls_;
 };
 
-void check_angle(double angle) {
-    if (!(angle >= 60.0 && angle <= 179.0)) {
-        throw InvalidOption("the angle between the contacts of a wall must lie between 60 and 179 degrees");
-    }
-}
-
 void check_options(const WallOptions& options) {
     for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
         if (limit && !(*limit > 0.0 && std::isfinite(*limit))) {
@@ -555,12 +549,12 @@ void check_options(const WallOptions& options) {
     if (!(options.edge > 0.0 && options.edge <= 1.0)) {
         throw InvalidOption("the longest edge must be more than 0, and at most the diagonal: 1");
     }
-    check_angle(options.angle);
+    check_wall_angle(options.angle);
 }
 
 std::vector<WallAt> between_sides_at(const Solid& solid, std::span<const Point> points, double angle,
                                      const Execution& execution) {
-    check_angle(angle);
+    check_wall_angle(angle);
     const double slope = cosine_of_degrees(0.5 * angle);
     const double most = solid.bounds().diagonal();
     return in_arena(execution, [&] {
