@@ -341,6 +341,16 @@ def _put_together(
     return _Stitched(complex, _global_steps(storage, source, complex, wanted), mismatches)
 
 
+def _write_report(storage: Storage, told: dict[str, Any]) -> None:
+    """What stitching takes differs from call to call: the report of what was there already stays as it is."""
+    try:
+        known = json.loads(storage.read("report.json") or b"{}")
+    except ValueError:
+        known = {}
+    if known | {"stitching_memory": told["stitching_memory"]} != told:
+        storage.write("report.json", json.dumps(told, indent=1).encode())
+
+
 def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, memory: int, block: int | None) -> Report:
     storage, share = runs.storage, memory // runs.workers
     threads = max(1, processors() // runs.workers) if runs.scheduler is None else 1
@@ -406,7 +416,7 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
         "unit": source.unit,
         "parts": [polygons_name(at.keys[0]) for at, row in zip(every, rows) if row.get("vertices")],
     }
-    storage.write("report.json", json.dumps(told, indent=1, default=str).encode())
+    _write_report(storage, json.loads(json.dumps(told, default=str)))
     return report
 
 
