@@ -292,11 +292,25 @@ TEST(MeshSolid, InsideOfABatchIsThatOfEachPoint) {
     Random random;
     for (const NamedMesh& named : closed_meshes()) {
         const auto solid = solid_of(named.mesh);
-        const std::vector<Point> points = query_points(named.mesh, 400, random);
-        std::vector<std::uint8_t> sides(points.size());
-        solid->inside(points, sides);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            ASSERT_EQ(sides[i] != 0, solid->inside(points[i])) << named.name << ", point " << i << ", seed " << kSeed;
+        std::vector<std::vector<Point>> batches{query_points(named.mesh, 400, random)};
+        // Points so near to each other that few triangles are near them: around a vertex, and on it.
+        const double step = 1e-4 * box_of(named.mesh).diagonal();
+        for (int i = 0; i < 20; ++i) {
+            const Point& vertex =
+                named.mesh.vertices[random.integer(0, static_cast<int>(named.mesh.vertices.size()) - 1)];
+            std::vector<Point> around{vertex, vertex};
+            for (int k = 0; k < 40; ++k) {
+                around.push_back(vertex + step * random.in({{-1, -1, -1}, {1, 1, 1}}));
+            }
+            batches.push_back(around);
+        }
+        for (const std::vector<Point>& points : batches) {
+            std::vector<std::uint8_t> sides(points.size());
+            solid->inside(points, sides);
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                ASSERT_EQ(sides[i] != 0, solid->inside(points[i]))
+                    << named.name << ", point " << i << ", seed " << kSeed;
+            }
         }
     }
 }

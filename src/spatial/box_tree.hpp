@@ -123,9 +123,9 @@ void for_each_near_segment(const BoxTree& tree, const Point& a, const Point& b, 
     });
 }
 
-/// Calls `visit(i)` for all items `i` whose boxes may meet `box`.
-template <class Visit>
-void for_each_near_box(const BoxTree& tree, const Box& box, const Visit& visit) {
+/// Is `test(i)` true of one of the items `i` whose boxes may meet `box`?
+template <class Test>
+bool any_near_box(const BoxTree& tree, const Box& box, const Test& test) {
     const Point low = tree.in_frame(box.min), high = tree.in_frame(box.max);
     const std::array<float, 3> min{static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
     const std::array<float, 3> max{static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
@@ -136,10 +136,22 @@ void for_each_near_box(const BoxTree& tree, const Box& box, const Visit& visit) 
         }
         return is_hit;
     };
-    box_tree_details::for_each_leaf(tree, hit, [&](Index first, Index count) {
+    return box_tree_details::any_leaf(tree, hit, [&](Index first, Index count) {
         for (Index i = first; i < first + count; ++i) {
-            visit(i);
+            if (test(i)) {
+                return true;
+            }
         }
+        return false;
+    });
+}
+
+/// Calls `visit(i)` for all of them.
+template <class Visit>
+void for_each_near_box(const BoxTree& tree, const Box& box, const Visit& visit) {
+    any_near_box(tree, box, [&](Index i) {
+        visit(i);
+        return false;
     });
 }
 

@@ -179,13 +179,9 @@ class MeshSolid final : public PointwiseSolid {
     using PointwiseSolid::inside;
 
     void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
-        // Points that follow each other are mostly near each other: crossings on the short way to the last one tell as
-        // exactly as those on the way out.
-        KnownWinding last;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            last = {points[i], winding_number(bvh_, box_, points[i], last)};
-            sides[i] = last.winding != 0 ? 1 : 0;
-        }
+        std::vector<int> windings(points.size());
+        winding_numbers(bvh_, box_, points, windings);
+        std::ranges::transform(windings, sides.begin(), [](int winding) { return winding != 0 ? 1 : 0; });
     }
 
     bool is_inside(const Point& p) const override { return winding_number(bvh_, box_, p) != 0; }

@@ -4,6 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -38,6 +44,50 @@ Point beyond_outer_side(const Bvh& bvh, const Box& box, Index t, const Point& p)
     return beyond_side(box, p, axis, normal.*kAxes[axis] > 0.0);
 }
 
+/// A point, and how often the surface winds around it.
+struct KnownWinding {
+    Point place{kInfinity, kInfinity, kInfinity};
+    int winding = 0;
+};
+
+/// How often the surface winds around `p`, by the way to a point where that is known, or by that out of the box,
+/// whichever is shorter. The answer is the same: crossings are exact, and of moved segments.
+int winding_from(const Bvh& bvh, const Box& box, const Point& p, const KnownWinding& known) {
+    if (!box.contains(p)) {
+        return 0;
+    }
+    const Point beyond = beyond_nearest_side(box, p);
+    const bool is_near = squared_distance(p, known.place) < squared_distance(p, beyond);
+    int winding = is_near ? known.winding : 0;
+    for_each_crossing(bvh, p, is_near ? known.place : beyond,
+                      [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
+    return winding;
+}
+
+// Testing more triangles one by one takes as long as looking for those near a segment in the tree.
+constexpr std::size_t kFewTriangles = 12;
+
+bool do_meet(const Box& a, const Box& b) {
+    return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && b.min.x <= a.max.x && b.min.y <= a.max.y &&
+           b.min.z <= a.max.z;
+}
+
+/// The triangles whose boxes meet a box, if they are few.
+std::optional<std::vector<Index>> few_triangles_near(const Bvh& bvh, const Box& box) {
+    std::vector<Index> near;
+    const bool is_few = !any_near_box(bvh, box, [&](Index t) {
+        Box around;
+        for (const Index v : bvh.mesh.triangles[t]) {
+            around.extend(bvh.mesh.vertices[v]);
+        }
+        if (do_meet(around, box)) {
+            near.push_back(t);
+        }
+        return near.size() > kFewTriangles;
+    });
+    return is_few ? std::optional(std::move(near)) : std::nullopt;
+}
+
 }  // namespace
 
 Point beyond_nearest_side(const Box& box, const Point& p) {
@@ -56,16 +106,28 @@ Point beyond_nearest_side(const Box& box, const Point& p) {
     return beyond_side(box, p, axis, is_upper);
 }
 
-int winding_number(const Bvh& bvh, const Box& box, const Point& p, const KnownWinding& known) {
-    if (!box.contains(p)) {
-        return 0;
+void winding_numbers(const Bvh& bvh, const Box& box, std::span<const Point> points, std::span<int> windings) {
+    // Points that follow each other are mostly near each other: crossings on the short way to the last one tell as
+    // exactly as those on the way out. Where all of them are so near that a handful of triangles comes between them, as
+    // for directions around one point, these are found once.
+    KnownWinding last;
+    std::optional<std::vector<Index>> near;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        const Point& p = points[i];
+        if (i == 1) {
+            near = few_triangles_near(bvh, box_around(points));
+        }
+        if (near) {
+            const SegmentProbe probe(p, last.place);
+            for (const Index t : *near) {
+                last.winding += crossing_with(bvh, probe, t).sign;
+            }
+        } else {
+            last.winding = winding_from(bvh, box, p, last);
+        }
+        last.place = p;
+        windings[i] = last.winding;
     }
-    const Point beyond = beyond_nearest_side(box, p);
-    const bool is_near = squared_distance(p, known.place) < squared_distance(p, beyond);
-    int winding = is_near ? known.winding : 0;
-    for_each_crossing(bvh, p, is_near ? known.place : beyond,
-                      [&](Index, const SegmentCrossing& crossing) { winding += crossing.sign; });
-    return winding;
 }
 
 int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point& p) {

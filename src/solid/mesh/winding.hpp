@@ -3,6 +3,7 @@
 /// Winding numbers of a closed surface, by exact crossings.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "base/numbers.hpp"
@@ -19,14 +20,19 @@ inline constexpr double kSamePlace = 1e-9;
 /// The same for segments that lead out of the bounds: those between samples are shorter by a factor of about 100.
 inline constexpr double kSamePlaceOnWayOut = 1e-11;
 
+/// Where a segment crosses triangle `t`.
+inline SegmentCrossing crossing_with(const Bvh& bvh, const SegmentProbe& probe, Index t) {
+    const auto& [u, v, w] = bvh.mesh.triangles[t];
+    const std::vector<Point>& p = bvh.mesh.vertices;
+    return probe.crossing(p[u], p[v], p[w]);
+}
+
 /// Calls `visit(t, crossing)` for all triangles that the segment `ab` crosses, in no particular order.
 template <class Visit>
 void for_each_crossing(const Bvh& bvh, const Point& a, const Point& b, const Visit& visit) {
     const SegmentProbe probe(a, b);
     for_each_near_segment(bvh, a, b, [&](Index t) {
-        const auto& [u, v, w] = bvh.mesh.triangles[t];
-        const std::vector<Point>& p = bvh.mesh.vertices;
-        if (const SegmentCrossing crossing = probe.crossing(p[u], p[v], p[w]); crossing.sign != 0) {
+        if (const SegmentCrossing crossing = crossing_with(bvh, probe, t); crossing.sign != 0) {
             visit(t, crossing);
         }
     });
@@ -54,15 +60,8 @@ inline int winding_number(const Bvh& bvh, const Box& box, const Point& p) {
     return winding_number(bvh, box, p, [](Index) { return true; });
 }
 
-/// A point, and how often the surface winds around it.
-struct KnownWinding {
-    Point place{kInfinity, kInfinity, kInfinity};
-    int winding = 0;
-};
-
-/// How often the surface winds around `p`, by the way to a point where that is known, or by that out of the box,
-/// whichever is shorter. The answer is the same: crossings are exact, and of moved segments.
-int winding_number(const Bvh& bvh, const Box& box, const Point& p, const KnownWinding& known);
+/// The same for several points, faster where those that follow each other are near each other.
+void winding_numbers(const Bvh& bvh, const Box& box, std::span<const Point> points, std::span<int> windings);
 
 /// The winding number just outside triangle `t`, where its normal points to, at its point `p`. Just inside it is one
 /// more. \pre no other triangle passes through `p`
