@@ -182,6 +182,34 @@ TEST(SharpEdges, OfBarsAndPyramidsGiveTheSameSheetsInAnyPosition) {
     }
 }
 
+// In the corners of a frame of square bars, where the inner edge is farther away than the faces, the middle planes of
+// the bars are left: triangles with an arc for a side, 1.8 tolerances wide. They are no slivers.
+TEST(SharpEdges, OfAFrameOfSquareBarsLeaveTheSheetsInItsCorners) {
+    TriangleMesh frame;
+    for (const double half : {3.0, 2.0}) {
+        for (const double z : {0.0, 1.0}) {
+            for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
+                frame.vertices.push_back({half * x, half * y, z});
+            }
+        }
+    }
+    const auto add_quad = [&](Index a, Index b, Index c, Index d) {
+        frame.triangles.insert(frame.triangles.end(), {{a, b, c}, {a, c, d}});
+    };
+    for (Index k = 0; k < 4; ++k) {
+        const Index next = (k + 1) % 4;
+        add_quad(k, next, next + 4, k + 4);            // outside
+        add_quad(next + 8, k + 8, k + 12, next + 12);  // inside
+        add_quad(k + 4, next + 4, next + 12, k + 12);  // above
+        add_quad(next, k, k + 8, next + 8);            // below
+    }
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        EXPECT_EQ(axis_of(*mesh_solid(moved(frame, random_turn(random))), 1.1, 0.01).complex.sheets, 18);
+    }
+}
+
 TEST(SharpEdges, OfAThinPlateAreReachedAcrossGaps) {
     // 3.5 tolerances thick: beside its rims the balls make a sheet to one edge or to the other, here and there to both.
     const std::vector<std::array<double, 2>> square{{0.0, 0.0}, {20.0, 0.0}, {20.0, 20.0}, {0.0, 20.0}};

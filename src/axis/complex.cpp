@@ -16,13 +16,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-double distance_to_segment(const Point& p, const Point& a, const Point& b) {
-    const Point direction = b - a;
-    const double length = squared_norm(direction);
-    const double t = length > 0.0 ? std::clamp(dot(p - a, direction) / length, 0.0, 1.0) : 0.0;
-    return distance(p, a + t * direction);
-}
-
 std::vector<Index> prefix_sums(std::vector<Index> counts) {
     Index sum = 0;
     for (Index& count : counts) {
@@ -153,7 +146,7 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
         const double side = dot(cross(q - p, foot - p), axis);
         has_left = has_left || side > 0.0;
         has_right = has_right || side < 0.0;
-        nearest = std::min(nearest, distance_to_segment(foot, p, q));
+        nearest = std::min(nearest, segment_distance(foot, p, q));
     }
     if (!(has_left && has_right)) {
         nearest = 0.0;  // the midpoint of the contacts lies in the polygon
@@ -206,6 +199,22 @@ Point area_vector(const MedialComplex& complex, Index face) {
         sum = sum + cross(complex.vertices[corners[k - 1]] - origin, complex.vertices[corners[k]] - origin);
     }
     return 0.5 * sum;
+}
+
+double segment_distance(const Point& p, const Point& a, const Point& b) {
+    const Point direction = b - a;
+    const double length = squared_norm(direction);
+    const double t = length > 0.0 ? std::clamp(dot(p - a, direction) / length, 0.0, 1.0) : 0.0;
+    return distance(p, a + t * direction);
+}
+
+Point center_of_face(const MedialComplex& complex, Index face) {
+    const std::span<const Index> corners = complex.faces[face];
+    Point center{};
+    for (const Index v : corners) {
+        center = center + (1.0 / static_cast<double>(corners.size())) * complex.vertices[v];
+    }
+    return center;
 }
 
 double face_area(const MedialComplex& complex, Index face) { return norm(area_vector(complex, face)); }

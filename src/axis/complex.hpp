@@ -53,6 +53,11 @@ double object_angle(std::span<const Point> vertices, std::span<const Index> poly
 Point area_vector(const MedialComplex& complex, Index face);
 double face_area(const MedialComplex& complex, Index face);
 
+/// The mean of the corners.
+Point center_of_face(const MedialComplex& complex, Index face);
+
+double segment_distance(const Point& p, const Point& a, const Point& b);
+
 inline bool is_on_sharp_edge(const MedialComplex& complex, std::size_t v) {
     return complex.vertex_origins[v].kind == VertexKind::kSharpEdge;
 }

@@ -24,6 +24,7 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr double kMostWidth = 0.5;      // tolerances: as far as balls of a union are off
+constexpr double kMostRoom = 2.0 / 3;   // tolerances: on either side as far as balls of a union are inside the solid
 constexpr double kMostOfRadius = 0.25;  // what is narrower beside its balls, none between its sides tells from a seam
 constexpr double kMostEdge = 20.0;      // widths: as long as the edges of seams, on which contractions leave their ends
 
@@ -33,7 +34,26 @@ struct Sliver {
     double width = 0.0;  // that narrower sheets have
 };
 
-// The smallest first, so that the numbers of sheets do not matter.
+// Whether a disc of that diameter fits between the edges around a sheet, with its center in that of a face or an edge.
+bool has_room_for(double diameter, const MedialComplex& complex, std::span<const Index> faces,
+                  std::span<const Index> outline) {
+    const auto is_inside = [&](const Point& center) {
+        return std::ranges::all_of(outline, [&](Index e) {
+            const auto& [p, q] = complex.edges[e];
+            return 2.0 * segment_distance(center, complex.vertices[p], complex.vertices[q]) >= diameter;
+        });
+    };
+    return std::ranges::any_of(faces, [&](Index f) {
+        return is_inside(center_of_face(complex, f)) || std::ranges::any_of(complex.face_edges[f], [&](Index e) {
+                   const auto& [p, q] = complex.edges[e];
+                   return is_inside(midpoint(complex.vertices[p], complex.vertices[q]));
+               });
+    });
+}
+
+// Sheets that are narrow in the mean, and wide nowhere: in a corner where bars meet is one that is three times as wide
+// in its middle as in the mean along its jagged outline. The smallest first, so that the numbers of sheets do not
+// matter.
 std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
     const IndexLists faces_of = faces_of_sheets(complex);
     std::vector<std::uint8_t> is_outer(complex.edges.size());
@@ -47,18 +67,20 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
         // Along the outline, for the radii at its ends can differ much.
         double perimeter = 0.0;
         double most = 0.0;
+        std::vector<Index> outline;
         for (const Index f : faces_of[sheet]) {
             for (const Index e : complex.face_edges[f]) {
                 if (std::exchange(is_outer[e], 0) != 0) {
                     const auto& [p, q] = complex.edges[e];
                     const double length = distance(complex.vertices[p], complex.vertices[q]);
                     const double radius = 0.5 * (complex.radii[p] + complex.radii[q]);
+                    outline.push_back(e);
                     perimeter += length;
                     most += length * std::min(kMostWidth * tolerance, kMostOfRadius * radius);
                 }
             }
         }
-        if (2.0 * area < most) {
+        if (2.0 * area < most && !has_room_for(kMostRoom * tolerance, complex, faces_of[sheet], outline)) {
             slivers.push_back({area, sheet, most / perimeter});
         }
     }
