@@ -30,9 +30,14 @@ struct VolumeBlock {
     /// Voxels of the volume along each axis. Beyond its ends nothing is inside: an array that reaches there has at
     /// least one layer of voxels more, outside.
     Voxel volume{};
+    /// Layers around the array that are known to be outside, too, and are left out: the array then ends with one.
+    Voxel empty_before{};
+    Voxel empty_after{};  ///< the same behind it
 
-    bool ends_low(int axis) const { return origin[axis] < 0; }
-    bool ends_high(int axis) const { return origin[axis] + sizes[axis] > volume[axis]; }
+    std::int64_t known_low(int axis) const { return origin[axis] - empty_before[axis]; }
+    std::int64_t known_high(int axis) const { return origin[axis] + sizes[axis] + empty_after[axis]; }
+    bool ends_low(int axis) const { return known_low(axis) < 0; }
+    bool ends_high(int axis) const { return known_high(axis) > volume[axis]; }
 };
 
 /// A mask as values that are negative inside, between -1 and 1: smoothed by [1 2 1]/4 along each axis, so many times.

@@ -23,12 +23,13 @@ std::array<Index, 3> sizes_of(const Array& array) {
     return {static_cast<Index>(array.shape(2)), static_cast<Index>(array.shape(1)), static_cast<Index>(array.shape(0))};
 }
 
-/// The first voxel of the array, of the core, the one after the core; the sizes of the volume.
-using Place = std::array<Voxel, 4>;
+/// The first voxel of the array, of the core, the one after the core; the sizes of the volume; the empty layers before
+/// and after the array.
+using Place = std::array<Voxel, 6>;
 
 template <class Array>
 VolumeBlock block_of(const Array& array, const Place& place) {
-    return {sizes_of(array), place[0], place[1], place[2], place[3]};
+    return {sizes_of(array), place[0], place[1], place[2], place[3], place[4], place[5]};
 }
 
 template <class Array>

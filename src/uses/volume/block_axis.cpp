@@ -106,12 +106,12 @@ class BlockField {
     std::span<const float> values_;
 };
 
-Box box_of_array(const VolumeBlock& block) {
+/// Where it is known what is inside.
+Box box_of_known(const VolumeBlock& block) {
     std::array<double, 6> ends{};
     for (int axis = 0; axis < 3; ++axis) {
-        const auto low = static_cast<double>(block.origin[axis]);
-        ends[axis] = block.ends_low(axis) ? -kInfinity : low;
-        ends[3 + axis] = block.ends_high(axis) ? kInfinity : low + block.sizes[axis] - 1;
+        ends[axis] = block.ends_low(axis) ? -kInfinity : static_cast<double>(block.known_low(axis));
+        ends[3 + axis] = block.ends_high(axis) ? kInfinity : static_cast<double>(block.known_high(axis) - 1);
     }
     return {{ends[0], ends[1], ends[2]}, {ends[3], ends[4], ends[5]}};
 }
@@ -143,13 +143,12 @@ bool contains(const Box& box, const Ball& ball) {
            c.y + r < box.max.y && c.z + r < box.max.z;
 }
 
-/// How far the core is from where the array ends, at least.
+/// How far the core is from what is not known, at least.
 double halo_of(const VolumeBlock& block) {
     std::int64_t least = std::numeric_limits<std::int64_t>::max();
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t end = block.origin[axis] + block.sizes[axis];
-        least = block.ends_low(axis) ? least : std::min(least, block.core_low[axis] - block.origin[axis]);
-        least = block.ends_high(axis) ? least : std::min(least, end - 1 - block.core_high[axis]);
+        least = block.ends_low(axis) ? least : std::min(least, block.core_low[axis] - block.known_low(axis));
+        least = block.ends_high(axis) ? least : std::min(least, block.known_high(axis) - 1 - block.core_high[axis]);
     }
     return least == std::numeric_limits<std::int64_t>::max() ? kInfinity : static_cast<double>(least);
 }
@@ -187,8 +186,8 @@ std::vector<Point> lattice_samples(const VolumeBlock& block, const BlockField& f
     return samples;
 }
 
-/// The Delaunay tetrahedra of the samples; inside are those with their centre in the solid, and their ball in the
-/// array.
+/// The Delaunay tetrahedra of the samples; inside are those with their centre in the solid, and their ball where that
+/// is known.
 struct BlockCells {
     Triangulation triangulation;
     std::vector<Circumsphere> spheres;  // of infinite radius: not inside
@@ -204,7 +203,7 @@ BlockCells cells_of(const VolumeBlock& block, const BlockField& field, std::span
     BlockCells cells;
     cells.triangulation = triangulate(samples);
     cells.spheres.resize(cells.triangulation.size());
-    const Box box = box_of_array(block);
+    const Box box = box_of_known(block);
     for_each_index(cells.triangulation.size(), [&](std::size_t c) {
         const Triangulation& t = cells.triangulation;
         const std::array<Index, 4>& v = t.cells[c].vertices;
@@ -362,11 +361,15 @@ std::int64_t solid_euler(const VolumeBlock& block, std::span<const float> values
     std::array<Index, 3> low{};
     std::array<Index, 3> high{};
     for (int axis = 0; axis < 3; ++axis) {
-        low[axis] = block.core_low[axis] <= 0 ? 0 : static_cast<Index>(block.core_low[axis] - block.origin[axis]);
-        const Index last = block.sizes[axis] - 1;
-        high[axis] = block.core_high[axis] >= block.volume[axis]
-                         ? last
-                         : std::min(last, static_cast<Index>(block.core_high[axis] - block.origin[axis]));
+        const std::int64_t last = block.sizes[axis] - 1;
+        const auto within = [&](std::int64_t voxel) {
+            return static_cast<Index>(std::clamp<std::int64_t>(voxel - block.origin[axis], 0, last));
+        };
+        low[axis] = block.core_low[axis] <= 0 ? 0 : within(block.core_low[axis]);
+        high[axis] = block.core_high[axis] >= block.volume[axis] ? block.sizes[axis] - 1 : within(block.core_high[axis]);
+        if (low[axis] >= high[axis]) {  // it lies where nothing is inside
+            return 0;
+        }
     }
     return interpolant_euler(block.sizes, values, low, high);
 }
@@ -375,11 +378,12 @@ void check_block(const VolumeBlock& block, std::span<const float> values, const 
     check_scale(options.scale);
     std::size_t count = 1;
     for (int axis = 0; axis < 3; ++axis) {
-        const std::int64_t end = block.origin[axis] + block.sizes[axis];
-        if (block.sizes[axis] < 2 || block.core_low[axis] < block.origin[axis] || block.core_high[axis] > end ||
+        if (block.sizes[axis] < 2 || block.empty_before[axis] < 0 || block.empty_after[axis] < 0 ||
+            block.core_low[axis] < block.known_low(axis) || block.core_high[axis] > block.known_high(axis) ||
             block.core_low[axis] >= block.core_high[axis]) {
             throw InvalidOption(
-                "the core of a block must lie in its array, which has at least two voxels along an axis");
+                "the core of a block must lie where it is known what is inside, and its array has at least two voxels "
+                "along an axis");
         }
         count *= static_cast<std::size_t>(block.sizes[axis]);
     }

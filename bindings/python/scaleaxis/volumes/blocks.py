@@ -17,6 +17,7 @@ import numpy.typing as npt
 
 from .. import _core
 from ..batch.storage import Storage
+from ..errors import Error
 from .sources import Bytes, Source, Triple
 from .stitching import ply_of_part
 
@@ -25,6 +26,7 @@ _FIRST_HALO = 8  # voxels: most solids are less deep, and others are met again w
 _MOST_LABELS = 65535  # more than that are no labels
 
 Place = list[list[int]]
+_Voxel = npt.NDArray[np.int64]  # x first
 
 
 class Options(NamedTuple):
@@ -51,6 +53,7 @@ class Task(NamedTuple):
     halo: int = 0
     largest_depth: float = 0.0  #: near enough to matter
     wants_axis: bool = True
+    content: tuple[Triple, Triple] | None = None  #: no voxel inside with this halo is beyond it; None: not known
     thickness: tuple[float, int] | None = None  #: voxels for each step of 16 bits, and the size of chunks
 
 
@@ -84,7 +87,7 @@ def _mask(source: Source, values: npt.NDArray[Any]) -> Bytes:
     return np.asarray(values != 0, np.uint8)
 
 
-def _array(source: Source, low: npt.NDArray[np.int64], high: npt.NDArray[np.int64]) -> tuple[npt.NDArray[Any], Any]:
+def _array(source: Source, low: _Voxel, high: _Voxel) -> tuple[npt.NDArray[Any], Any]:
     """The voxels from `low` to `high` as far as they are in the volume, and how many layers are missing."""
     sizes = np.array(source.sizes)
     inner_low, inner_high = np.maximum(low, 0), np.minimum(high, sizes)
@@ -93,17 +96,58 @@ def _array(source: Source, low: npt.NDArray[np.int64], high: npt.NDArray[np.int6
     return values, missing
 
 
-def _limits(task: Task, halo: int) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
+def _limits(task: Task, halo: int) -> tuple[_Voxel, _Voxel]:
     """Of an array with such a halo: in the volume, and one layer beyond its ends."""
     sizes = np.array(task.source.sizes)
     return np.maximum(np.array(task.low) - halo, -1), np.minimum(np.array(task.high) + halo + 1, sizes + 1)
 
 
-def _field(task: Task, low: Any, high: Any, threads: int) -> npt.NDArray[np.float32]:
-    """The values from `low` to `high`, negative inside. What is beyond the volume is outside."""
+def box_of(mask: npt.NDArray[Any]) -> tuple[slice, ...] | None:
+    """Around all that is not 0."""
+    box = []
+    for axis in range(3):
+        found = np.flatnonzero(mask.any(axis=tuple({0, 1, 2} - {axis})))
+        if not len(found):
+            return None
+        box.append(slice(int(found[0]), int(found[-1]) + 1))
+    return tuple(box)
+
+
+def _inside(task: Task, low: _Voxel, high: _Voxel) -> tuple[Bytes, _Voxel] | None:
+    """The mask between `low` and `high`, cut to what is inside, and its first voxel. None if nothing is."""
+    low, high = np.maximum(low, 0), np.minimum(high, task.source.sizes)
+    if task.content is not None:
+        low, high = np.maximum(low, task.content[0]), np.minimum(high, task.content[1])
+    if (low >= high).any():
+        return None
+    mask = _mask(task.source, task.source.read(tuple(low.tolist()), tuple(high.tolist())))
+    box = box_of(mask)
+    return None if box is None else (np.ascontiguousarray(mask[box]), low + [at.start for at in box[::-1]])
+
+
+def _ends(array: npt.NDArray[Any], low: _Voxel) -> _Voxel:
+    return low + array.shape[::-1]
+
+
+def _padded(mask: Bytes, at: _Voxel, low: _Voxel, high: _Voxel) -> Bytes:
+    """From `low` to `high`, what was cut off outside."""
+    return np.pad(mask, list(zip((at - low)[::-1], (high - _ends(mask, at))[::-1])))
+
+
+def _field(task: Task, low: _Voxel, high: _Voxel) -> tuple[npt.NDArray[np.float32], _Voxel]:
+    """The values between `low` and `high`, negative inside, as far as the solid and a layer around it reach, and the first
+    voxel. What is beyond the volume is outside.
+    """
     source, passes = task.source, task.options.smoothing
+    margin = 0 if source.level is not None else passes + 1  # what smoothing looks at
+    found = _inside(task, low - margin, high + margin)
+    if found is None:
+        raise Error(f"{source.path}: nothing is inside any more: it has changed, so give another output")
+    mask, at = found
+    first, last = np.maximum(at - 1, low), np.minimum(_ends(mask, at) + 1, high)
     if source.level is not None:
-        values, missing = _array(source, low, high)
+        del mask
+        values, missing = _array(source, first, last)
         field = values.astype(np.float32) - np.float32(source.level)
         field = field if source.below else -field
         # Beyond the ends it is as far outside as it is inside at the border: the solid ends half way.
@@ -111,43 +155,61 @@ def _field(task: Task, low: Any, high: Any, threads: int) -> npt.NDArray[np.floa
         field = np.pad(field, missing, mode="edge")
         np.abs(field, out=field, where=beyond)
         field[beyond & (field == 0)] = 1e-30  # outside, and other than 0
-        return field
-    margin = passes + 1  # what smoothing looks at
-    values, missing = _array(source, low - margin, high + margin)
-    mask = np.pad(_mask(source, values), missing)
-    del values
-    field = _core.mask_values(mask, passes, threads).reshape(mask.shape)
-    return np.ascontiguousarray(field[(slice(margin, -margin),) * 3])
+        return field, first
+    mask = _padded(mask, at, first - margin, last + margin)
+    field = _core.mask_values(mask, passes, task.threads).reshape(mask.shape)
+    return np.ascontiguousarray(field[(slice(margin, -margin),) * 3]), first
 
 
-def _place(task: Task, low: npt.NDArray[np.int64]) -> Place:
-    return [low.tolist(), list(task.low), list(task.high), list(task.source.sizes)]
+def _place(task: Task, array: npt.NDArray[Any], at: _Voxel, low: _Voxel, high: _Voxel) -> Place:
+    """Of an array that begins at `at`, and that has all there is between `low` and `high`."""
+    empty = [(at - low).tolist(), (high - _ends(array, at)).tolist()]
+    return [at.tolist(), list(task.low), list(task.high), list(task.source.sizes), *empty]
 
 
-def _padded_mask(task: Task, halo: int) -> tuple[Bytes, npt.NDArray[np.int64]]:
-    low, high = _limits(task, halo)
-    values, missing = _array(task.source, low, high)
-    return np.pad(_mask(task.source, values), missing), low
-
-
-def _core_of(task: Task, array: npt.NDArray[Any], low: npt.NDArray[np.int64]) -> npt.NDArray[Any]:
+def _core_of(task: Task, array: npt.NDArray[Any], low: _Voxel) -> npt.NDArray[Any]:
     at = [slice(a - o, b - o) for a, b, o in zip(task.low, task.high, low.tolist())]
     return array[tuple(at[::-1])]
 
 
-def _cells_around(inside: npt.NDArray[Any], shape: tuple[int, ...]) -> list[slice] | None:
-    """The box of cells, in an array of this shape, of all that is inside and the voxels before it; None if nothing is."""
-    box = []
+def _occupied(values: npt.NDArray[Any], shape: tuple[int, ...]) -> npt.NDArray[np.bool_]:
+    """Of each cell in an array of this shape, whether there is anything but 0 in it, or in the layer after it."""
     for axis, size in enumerate(shape):
-        found = np.flatnonzero(inside.any(axis=tuple({0, 1, 2} - {axis})))
-        if not len(found):
-            return None
-        first, last = max(0, int(found[0]) - 1), int(found[-1])
-        box.append(slice(first // CELL * CELL, min((last // CELL + 1) * CELL, size)))
-    return box
+        layers = np.moveaxis(values, axis, 0)
+        values = np.stack([layers[at : at + CELL + 1].any(axis=0) for at in range(0, size, CELL)], axis)
+    return values
 
 
-def _part_of_core(task: Task, box: list[slice]) -> Task:
+def boxes_of(cells: npt.NDArray[np.bool_], low: tuple[int, ...] = (0, 0, 0)) -> list[tuple[slice, ...]]:
+    """Of boxes around all that is there. A box is halved along its longest axis if its halves, each cut to what is in
+    it, have fewer voxels with what is around them.
+    """
+    box = box_of(cells)
+    if box is None:
+        return []
+    cells = cells[box]
+    low = tuple(a + at.start for a, at in zip(low, box))
+    whole = [tuple(slice(a, a + n) for a, n in zip(low, cells.shape))]
+    axis = int(np.argmax(cells.shape))
+    middle = cells.shape[axis] // 2
+    if cells.all() or middle == 0:
+        return whole
+    halves = []
+    for begin, half in zip((0, middle), np.split(cells, [middle], axis)):
+        halves += boxes_of(half, tuple(a + begin * (n == axis) for n, a in enumerate(low)))
+    return halves if sum(map(_volume, halves)) < _volume(whole[0]) else whole
+
+
+def _volume(box: tuple[slice, ...]) -> int:
+    return math.prod((at.stop - at.start) * CELL + 2 * _FIRST_HALO for at in box)
+
+
+def _voxels(box: tuple[slice, ...], shape: tuple[int, ...]) -> tuple[slice, ...]:
+    """Of cells, in an array of this shape."""
+    return tuple(slice(at.start * CELL, min(at.stop * CELL, size)) for at, size in zip(box, shape))
+
+
+def _part_of_core(task: Task, box: tuple[slice, ...]) -> Task:
     x, y, z = ((a + at.start, a + at.stop) for a, at in zip(task.low, box[::-1]))
     return task._replace(low=(x[0], y[0], z[0]), high=(x[1], y[1], z[1]))
 
@@ -209,22 +271,27 @@ def _depths(task: Task) -> dict[str, Any]:
 
 def _depths_of_block(task: Task) -> dict[str, Any]:
     source = task.source
-    labels = {}
     values, _ = _array(source, *_limits(task, 0))
     shape = tuple(b - a for a, b in zip(task.low, task.high))[::-1]
+    labels: dict[str, list[int]] = {}
     if source.level is None:
-        known = _cells_around(values != 0, shape)
-        if known is not None:
-            core_values = values[tuple(slice(size) for size in shape)]
-            labels = _labels(core_values[tuple(known)], _part_of_core(task, known).low)
-    box = _cells_around(_mask(source, values), shape)
-    if box is None:
-        return {"cells": [], "labels": labels}
+        boxes = [_voxels(box, shape) for box in boxes_of(_occupied(values, shape))]
+        labels = merged_labels(_labels(values[box], _part_of_core(task, box).low) for box in boxes)
+    if source.level is not None or source.labels:
+        boxes = [_voxels(box, shape) for box in boxes_of(_occupied(_mask(source, values), shape))]
     del values
-    task = _part_of_core(task, box)
+    cells = [cell for box in boxes for cell in _depths_of_box(_part_of_core(task, box))]
+    return {"cells": cells, "labels": labels}
+
+
+def _depths_of_box(task: Task) -> list[list[int]]:
+    source = task.source
     halo = _FIRST_HALO
     while True:
-        mask, low = _padded_mask(task, halo)
+        low, high = _limits(task, halo)
+        values, missing = _array(source, low, high)
+        mask = np.pad(_mask(source, values), missing)
+        del values
         depths = _core.squared_depths(mask, task.threads).reshape(mask.shape)
         core = _core_of(task, depths, low)
         reaches_all = all(a < 0 for a in low) and all(
@@ -252,7 +319,7 @@ def _depths_of_block(task: Task) -> dict[str, Any]:
                 if voxels or crossings:
                     cell = [(o + c) // CELL for o, c in zip(task.low, (x, y, z))]
                     cells.append([*cell, voxels, int(core[at].max()), crossings])
-    return {"cells": cells, "labels": labels}
+    return cells
 
 
 def npz(**arrays: npt.NDArray[Any]) -> bytes:
@@ -265,9 +332,19 @@ def npz(**arrays: npt.NDArray[Any]) -> bytes:
 def _write_thickness(task: Task, row: dict[str, Any]) -> None:
     assert task.thickness is not None
     step, chunk = task.thickness
-    mask, low = _padded_mask(task, 2 * math.ceil(task.largest_depth) + 2)
-    shape = tuple(b - a for a, b in zip(task.low, task.high))[::-1]
-    values = _core.thickness_of_block(mask, _place(task, low), task.threads).reshape(shape)
+    low, high = _limits(task, 2 * math.ceil(task.largest_depth) + 2)
+    found = _inside(task, low, high)
+    assert found is not None
+    mask, at = found
+    core = np.maximum(at, task.low), np.minimum(_ends(mask, at), task.high)
+    low, high = np.maximum(at - 1, low), np.minimum(_ends(mask, at) + 1, high)
+    place = [low.tolist(), *(end.tolist() for end in core), list(task.source.sizes), [0] * 3, [0] * 3]
+    # The chunks around it.
+    first = core[0] // chunk * chunk
+    shape = tuple((core[1] - first)[::-1].tolist())
+    values = np.zeros(shape, np.float32)
+    part = values[tuple(slice(a - o, None) for a, o in zip(core[0][::-1], first[::-1]))]
+    part[...] = _core.thickness_of_block(_padded(mask, at, low, high), place, task.threads).reshape(part.shape)
     for z in range(0, shape[0], chunk):
         for y in range(0, shape[1], chunk):
             for x in range(0, shape[2], chunk):
@@ -275,7 +352,7 @@ def _write_thickness(task: Task, row: dict[str, Any]) -> None:
                 if part.any():
                     part = np.rint(part / np.float32(step)).astype("<u2")
                     full = np.pad(part, [(0, chunk - size) for size in part.shape])
-                    place = [(o + c) // chunk for o, c in zip(task.low[::-1], (z, y, x))]
+                    place = [(o + c) // chunk for o, c in zip(first[::-1].tolist(), (z, y, x))]
                     name = f"thickness.zarr/0/{'.'.join(map(str, place))}"
                     _write(task, row, name, zlib.compress(full.tobytes(), 1))
 
@@ -290,10 +367,10 @@ def _parts(task: Task) -> dict[str, Any]:
     options = task.options
     while True:
         low, high = _limits(task, halo)
-        field = _field(task, low, high, task.threads)
+        field, at = _field(task, low, high)
         part = _core.axis_of_block(
             field,
-            _place(task, low),
+            _place(task, field, at, low, high),
             options.scale,
             task.largest_depth,
             options.seed,
@@ -303,6 +380,7 @@ def _parts(task: Task) -> dict[str, Any]:
         if part["is_certain"]:
             break
         halo = math.ceil(part["halo"]) + 1
+        task = task._replace(content=None)
     names = ("vertices", "radii", "face_offsets", "face_vertices", "angles", "curves")
     if len(part["vertices"]):
         arrays = {name: part[name] for name in names}
@@ -319,14 +397,16 @@ def _checked(task: Task) -> dict[str, Any]:
     """
     low = np.array(task.low)
     high = np.minimum(np.array(task.high) + 1, np.array(task.source.sizes))
-    sizes = (high - low).tolist()
-    field = np.pad(_field(task, low, high, task.threads), 1, mode="edge")
+    field, at = _field(task, low, high)
+    field = np.pad(field, 1, mode="edge")
     for axis in range(3):
         for end in (0, -1):
             side = np.moveaxis(field, axis, 0)[end]
             np.abs(side, out=side)
             side[side == 0] = 1e-30  # outside, and other than 0
-    place = [[-1] * 3, [0] * 3, sizes, sizes]
+    sizes = tuple((high - low).tolist())
+    alone = task._replace(low=(0, 0, 0), high=sizes, source=task.source._replace(sizes=sizes))
+    place = _place(alone, field, at - low - 1, np.full(3, -1), high - low + 1)
     options = task.options
     part = _core.axis_of_block(
         field, place, options.scale, task.largest_depth, options.seed, options.move, task.threads

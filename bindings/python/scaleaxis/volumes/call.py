@@ -380,7 +380,7 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
 
         def of(at: Block) -> Task:
             told = (at.halo, at.largest_depth, wanted.axis, thickness)
-            more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": wanted.axis}
+            more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": wanted.axis, "content": at.content}
             return task("part", at.low, at.high, moved, told, **more, thickness=thickness)
 
         return [of(at) for at in blocks]

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from .. import _core
 from ..errors import InvalidOption
-from .blocks import CELL, blocks_of
+from .blocks import CELL, blocks_of, box_of
 from .sources import Triple
 
 # Bytes, measured with bench/bench_volumes and rounded up: of a process; of each voxel of an array while its values are
@@ -25,6 +25,7 @@ _THICKNESS = 12  # of each voxel of an array where the thickness alone is wanted
 _DEPTHS = 10  # and where depths are found
 _CHOICES = (512, 384, 256, 192, 128, 96, 64, 32)  # sizes of blocks, in voxels
 _ROUND = 1e-9
+_MARGIN = 6  # voxels: what 4 passes of smoothing look at, and one for the layer around the solid
 
 
 class Block(NamedTuple):
@@ -33,6 +34,7 @@ class Block(NamedTuple):
     halo: int
     largest_depth: float  #: of what it depends on
     memory: int
+    content: tuple[Triple, Triple]  #: with this halo, all that is inside
 
 
 @dataclass(frozen=True)
@@ -79,13 +81,23 @@ class DepthMap:
             if around <= depth + _ROUND:
                 break
             depth = around
-        extents = [min(b + halo, n) - max(a - halo, 0) + 2 for a, b, n in zip(low, high, self.sizes)]
+        content = self._content(low, high, halo + _MARGIN)
+        extents = [min(b, d + halo) - max(a, c - halo) + 2 for a, b, c, d in zip(*content, low, high)]
         voxels = math.prod(extents)
         if scale is None:
-            return Block(low, high, halo, depth, _PROCESS + _THICKNESS * voxels)
+            return Block(low, high, halo, depth, _PROCESS + _THICKNESS * voxels, content)
         crossings = int(self.crossings[self._at(low, high, halo)].sum())
         memory = _PROCESS + max(_VOXEL * voxels, _VALUE * voxels + _CROSSING * crossings)
-        return Block(low, high, halo, depth, memory)
+        return Block(low, high, halo, depth, memory, content)
+
+    def _content(self, low: Triple, high: Triple, halo: int) -> tuple[Triple, Triple]:
+        """The voxels of the cells around all that is inside."""
+        at = self._at(low, high, halo)
+        box = box_of(self.voxels[at])
+        assert box is not None
+        cells = [(a.start + b.start, a.start + b.stop) for a, b in zip(at, box)]
+        x, y, z = ((a * CELL, min(b * CELL, n)) for (a, b), n in zip(cells, self.sizes))
+        return (x[0], y[0], z[0]), (x[1], y[1], z[1])
 
     def plan(self, scale: float | None, memory: int, edge: int | None) -> tuple[int, list[Block]]:
         """The size of blocks and those that are not empty. Raises InvalidOption if one needs more than `memory`."""
