@@ -108,6 +108,42 @@ TEST(Volume, BlocksGiveWhatTheWholeGives) {
     EXPECT_EQ(solid_euler, whole.solid_euler);
 }
 
+// The bar in a volume that is empty but for it, from an array of its own size, and from one that has the voids, too.
+TEST(Volume, VoidsMayBeLeftOut) {
+    const Mask mask = bar();
+    const auto part_with = [&](Index layers, const Voxel& low, const Voxel& high, Index empty) {
+        const std::array<Index, 3> sizes{kBar[0] + 2 * layers, kBar[1] + 2 * layers, kBar[2] + 2 * layers};
+        std::vector<float> values;
+        for (Index k = -layers; k < kBar[2] + layers; ++k) {
+            for (Index j = -layers; j < kBar[1] + layers; ++j) {
+                for (Index i = -layers; i < kBar[0] + layers; ++i) {
+                    const bool is_within = std::min({i, j, k}) >= 0 && i < kBar[0] && j < kBar[1] && k < kBar[2];
+                    values.push_back(is_within && mask.values[mask.place(i, j, k)] != 0 ? -1.0F : 1.0F);
+                }
+            }
+        }
+        const Voxel at{90 - layers, 90 - layers, 90 - layers};
+        return axis_of_block({sizes, at, low, high, {300, 300, 300}, {empty, empty, empty}, {empty, empty, empty}},
+                             values, {1.1, 3.0});
+    };
+    // Both halos are known as far; the core begins in the voids, and lies in them for the third block.
+    const std::array<std::array<Voxel, 2>, 3> cores{
+        {{{{80, 80, 80}, {220, 110, 110}}}, {{{150, 80, 80}, {220, 110, 110}}}, {{{80, 80, 80}, {110, 88, 110}}}}};
+    for (const auto& [low, high] : cores) {
+        const VolumePart full = part_with(60, low, high, 0);
+        const VolumePart cut = part_with(0, low, high, 60);
+        ASSERT_TRUE(full.is_certain && cut.is_certain);
+        EXPECT_EQ(faces_of(cut), faces_of(full));
+        EXPECT_EQ(cut.euler, full.euler);
+        EXPECT_EQ(cut.solid_euler, full.solid_euler);
+        EXPECT_EQ(cut.samples, full.samples);
+        EXPECT_EQ(cut.halo, full.halo);
+    }
+    // What is not known is not believed to be empty.
+    EXPECT_FALSE(part_with(0, {150, 90, 90}, {200, 97, 97}, 2).is_certain);
+    EXPECT_THROW(part_with(0, cores[0][0], cores[0][1], 2), InvalidOption);
+}
+
 TEST(Volume, SmallHalosAreFoundOut) {
     const VolumePart part = part_of_bar(30, 60, 10);
     EXPECT_FALSE(part.is_certain);

@@ -366,7 +366,8 @@ std::int64_t solid_euler(const VolumeBlock& block, std::span<const float> values
             return static_cast<Index>(std::clamp<std::int64_t>(voxel - block.origin[axis], 0, last));
         };
         low[axis] = block.core_low[axis] <= 0 ? 0 : within(block.core_low[axis]);
-        high[axis] = block.core_high[axis] >= block.volume[axis] ? block.sizes[axis] - 1 : within(block.core_high[axis]);
+        high[axis] =
+            block.core_high[axis] >= block.volume[axis] ? block.sizes[axis] - 1 : within(block.core_high[axis]);
         if (low[axis] >= high[axis]) {  // it lies where nothing is inside
             return 0;
         }
