@@ -17,6 +17,7 @@ import scaleaxis
 import scipy.ndimage
 import tensorstore
 import zarr
+from scaleaxis import InvalidOption
 from scaleaxis.volumes import Report, volume
 
 pytestmark = pytest.mark.filterwarnings("ignore:trees have no loops")  # of which SWC files are made
@@ -67,6 +68,28 @@ def test_parts_are_the_axis(made: tuple[Report, Path]) -> None:
     whole = scaleaxis.read_axis(output / "axis.ply")
     assert faces_of(parts) == faces_of([getattr(whole, "complex", whole)])
     assert sum(pyvista.read(output / name).n_cells for name in names) >= report.faces
+
+
+def test_parts_as_vtp(made: tuple[Report, Path], tmp_path: Path) -> None:
+    """The same faces, vertices and radii as in PLY, for another reader, and the same stitched file."""
+    report, output = made
+    told: dict[str, Any] = {"memory": "4GB", "workers": 2, "progress": False, "label": 7, "block": 32}
+    volume(output.parent / "v.zarr", tmp_path, parts_format="vtp", **told)
+    names = json.loads((tmp_path / "report.json").read_text())["parts"]
+    assert len(names) > 1 and all(name.endswith(".vtp") for name in names)
+    assert not list(tmp_path.glob("blocks/*.ply"))
+    assert (tmp_path / "axis.ply").read_bytes() == (output / "axis.ply").read_bytes()
+    known = json.loads((output / "report.json").read_text())["parts"]
+    faces = 0
+    for name, other in zip(names, known):
+        part, ply = pyvista.read(tmp_path / name), pyvista.read(output / other)
+        faces += part.GetNumberOfPolys()
+        assert (part.GetNumberOfPolys(), part.n_points) == (ply.GetNumberOfPolys(), ply.n_points)
+        assert np.allclose(np.sort(part.points, axis=0), np.sort(ply.points, axis=0), atol=1e-5)
+        assert np.allclose(np.sort(part["radius"]), np.sort(ply["radius"]))
+    assert faces == report.faces
+    with pytest.raises(InvalidOption, match="parts_format must be ply or vtp"):
+        volume(output.parent / "v.zarr", tmp_path, parts_format="obj", **told)  # type: ignore[arg-type]
 
 
 def test_thickness_is_a_valid_image(made: tuple[Report, Path]) -> None:

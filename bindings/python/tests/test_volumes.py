@@ -20,7 +20,8 @@ import scaleaxis
 import scipy.ndimage
 from scaleaxis import FileError, InvalidOption
 from scaleaxis.batch.command import main
-from scaleaxis.volumes import Report, call, volume
+from scaleaxis.volumes import Report, blocks, call, sources, volume, worker
+from scaleaxis.volumes.causes import CAUSES
 from scaleaxis.volumes.stitching import part_of
 from scaleaxis.volumes.worker import DEBUG
 
@@ -130,6 +131,53 @@ def test_a_mismatch_names_the_block(tmp_path: Path) -> None:
     assert told["mismatches"] == [[32, 0, 0, report.mismatches[32, 0, 0]]]
 
 
+def plates(gap: int, thickness: int) -> Mask:
+    mask = np.zeros(SHAPE, np.uint8)
+    mask[8 : 8 + thickness, 8:30, 40:60] = mask[8 + thickness + gap : 8 + 2 * thickness + gap, 8:30, 40:60] = 1
+    return mask
+
+
+def gap_closed_by_growing() -> tuple[Mask, dict[str, Any], Any]:
+    """Two plates two voxels apart, whose gap grows together."""
+    return plates(2, 8), {"scale": 1.5}, ((40, 8, 16), (60, 30, 18))
+
+
+def touching_in_an_edge() -> tuple[Mask, dict[str, Any], Any]:
+    """Two cubes that share an edge alone: apart for the solid, joined by the axis. Two others share nothing."""
+    mask = np.zeros(SHAPE, np.uint8)
+    mask[8:16, 8:16, 40:48] = mask[8:16, 16:24, 48:56] = 1
+    mask[8:16, 8:16, 4:12] = mask[8:16, 24:32, 20:28] = 1
+    return mask, {"smoothing": 0, "scale": 1.3}, ((46, 14, 7), (50, 18, 17))
+
+
+def hole_of_a_voxel() -> tuple[Mask, dict[str, Any], Any]:
+    """A plate with a hole that is a voxel wide, and one of five voxels."""
+    mask = np.zeros(SHAPE, np.uint8)
+    mask[8:16, 8:30, 20:70] = 1
+    mask[8:16, 14:19, 28:33] = mask[8:16, 16, 50] = 0
+    return mask, {"smoothing": 0}, ((49, 15, 8), (52, 18, 16))
+
+
+@pytest.mark.parametrize(
+    ("kind", "made"),
+    [("growing", gap_closed_by_growing), ("contact", touching_in_an_edge), ("thin", hole_of_a_voxel)],
+)
+def test_a_mismatch_has_a_cause_and_a_place(
+    kind: str, made: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    mask, options, (low, high) = made()
+    report = run(saved(tmp_path, mask), tmp_path / "out", block=96, **options)
+    assert report.agrees is False and set(report.causes) == {(0, 0, 0)}
+    cause, place = report.causes[0, 0, 0]
+    assert cause == kind
+    assert all(a <= at < b for a, at, b in zip(low, place, high)), place
+    told = json.loads((tmp_path / "out/report.json").read_text())
+    assert told["causes"] == [[0, 0, 0, cause, *place]]
+    words = [f"--{name}={value}" for name, value in options.items()]
+    assert main(["volume", str(tmp_path / "volume.npy"), "-o", str(tmp_path / "out"), "--block=96", *words]) == 0
+    assert f": {CAUSES[kind]}, at voxel {', '.join(map(str, place))}" in capsys.readouterr().out
+
+
 def well_composed(mask: Mask) -> Mask:
     """With voxels more, until none touch in an edge or a corner alone, nor gaps between them."""
     whole = np.pad(mask != 0, 1)
@@ -203,6 +251,66 @@ def test_stitching_keeps_to_the_memory(tmp_path: Path, log: Path, monkeypatch: p
     assert report.faces == len(report.axis.faces)
     with pytest.raises(InvalidOption, match="of the stitched axis"):
         run(source, tmp_path / "out", stitch=False, skeleton=True)
+
+
+def test_boxes_hold_what_is_there_and_little_else() -> None:
+    """Each cell of something is in one box; voids between them are in none."""
+    for seed in range(20):
+        cells = np.random.default_rng(seed).uniform(size=(5, 9, 7)) < 0.02 * (seed % 5)
+        times = np.zeros(cells.shape, int)
+        for box in blocks.boxes_of(cells):
+            times[box] += 1
+        assert (times[cells] == 1).all() and times.max() <= 1, seed
+    corners = np.zeros((8, 8, 8), bool)
+    corners[0, 0, 0] = corners[7, 7, 7] = corners[7, 7, 6] = True
+    assert sum(corners[box].size for box in blocks.boxes_of(corners)) == 3
+    assert blocks.boxes_of(np.ones((2, 3, 4), bool)) == [(slice(0, 2), slice(0, 3), slice(0, 4))]
+
+
+@pytest.mark.parametrize("place", [(0, 0, 0), (60, 70, 64), (100, 160, 97)])
+@pytest.mark.parametrize("kind", ["mask", "label", "level"])
+def test_voids_are_not_read(place: Any, kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ball in a large volume: but for one look at all of it, only what is around the ball. Thickness is that of a volume
+    that ends beside it.
+    """
+    z, y, x = np.indices((40, 40, 40)) - 20
+    ball = ((x * x + y * y + z * z < 100) * 5).astype(np.uint8)
+    whole = np.zeros((200, 200, 200), np.uint8)
+    at = tuple(slice(a, a + 40) for a in place)
+    whole[at] = ball
+    if kind == "label":
+        whole[150:155, 10:190, 10:20] = 3
+    (tmp_path / "a").mkdir()
+    (tmp_path / "b").mkdir()
+    options: dict[str, Any] = {"mask": {}, "label": {"label": 5}, "level": {"level": 2.5}}[kind]
+    read = []
+
+    def counted(source: Any, low: Any, high: Any) -> Any:
+        read.append(int(np.prod(np.subtract(high, low))))
+        return sources._read(source.path, source.kind, source.dataset, low, high)
+
+    monkeypatch.setattr(sources.Source, "read", counted)
+    monkeypatch.setattr(call, "in_threads", lambda tasks, *_: ([worker._row(task)] for task in tasks))
+    options |= {"thickness": True, "block": 96}
+    report = run(saved(tmp_path / "a", whole), tmp_path / "a/out", **options)
+    assert sum(read) < 2 * whole.size  # with all voxels around each block: more than ten times
+    alone = np.pad(ball, 30)
+    small = run(saved(tmp_path / "b", alone), tmp_path / "b/out", **options)
+    assert (report.samples, report.largest_depth) == (small.samples, small.largest_depth)
+    assert (report.euler, report.solid_euler) == (1, 1)
+    moved = thickness_of(tmp_path / "a/out")
+    assert np.array_equal(moved[at], thickness_of(tmp_path / "b/out")[30:-30, 30:-30, 30:-30])
+    assert np.count_nonzero(moved) == np.count_nonzero(ball)
+
+
+def test_processes_of_blocks_are_forks_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    started = []
+    start = worker._start
+    monkeypatch.setattr(worker, "_start", lambda: started.append(start()) or started[-1])
+    report = run(saved(tmp_path, tubes()), tmp_path / "out", block=32, workers=1)
+    # One for depths, one for parts.
+    assert report.computed > 4 and [server.returncode for server in started] == [0, 0]
+    assert not worker._idle and not worker._busy
 
 
 def test_thickness_is_that_of_the_definition(tmp_path: Path) -> None:

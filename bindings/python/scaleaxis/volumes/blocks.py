@@ -17,12 +17,15 @@ import numpy.typing as npt
 
 from .. import _core
 from ..batch.storage import Storage
-from ..errors import Error
+from ..errors import Error, InconsistentResult
+from .causes import repairs
 from .sources import Bytes, Source, Triple
-from .stitching import ply_of_part
+from .stitching import ply_of_part, vtp_of_part
 
 CELL = 32  # voxels: of these cubes it is kept how deep the solid is, so that blocks know what is around them
 _FIRST_HALO = 8  # voxels: most solids are less deep, and others are met again with a halo that is large enough
+MOVES = 4  # of balls, each twice as far as the one before
+_GROUP = 8  # voxels: places nearer to each other are one when the place of a difference is sought
 _MOST_LABELS = 65535  # more than that are no labels
 
 Place = list[list[int]]
@@ -41,7 +44,7 @@ class Options(NamedTuple):
 class Task(NamedTuple):
     """Plain data, which goes to workers."""
 
-    kind: str  #: depths, part or check
+    kind: str  #: depths, part, check or explain
     keys: list[str]  #: one: the name of the result
     storage: Storage
     source: Source
@@ -54,6 +57,7 @@ class Task(NamedTuple):
     largest_depth: float = 0.0  #: near enough to matter
     wants_axis: bool = True
     content: tuple[Triple, Triple] | None = None  #: no voxel inside with this halo is beyond it; None: not known
+    parts_format: str = "ply"
     thickness: tuple[float, int] | None = None  #: voxels for each step of 16 bits, and the size of chunks
 
 
@@ -65,8 +69,8 @@ def part_name(key: str) -> str:
     return f"blocks/{key}.npz"
 
 
-def polygons_name(key: str) -> str:
-    return f"blocks/{key}.ply"
+def polygons_name(key: str, extension: str) -> str:
+    return f"blocks/{key}.{extension}"
 
 
 def digest(content: bytes) -> str:
@@ -338,7 +342,7 @@ def _write_thickness(task: Task, row: dict[str, Any]) -> None:
     mask, at = found
     core = np.maximum(at, task.low), np.minimum(_ends(mask, at), task.high)
     low, high = np.maximum(at - 1, low), np.minimum(_ends(mask, at) + 1, high)
-    place = [low.tolist(), *(end.tolist() for end in core), list(task.source.sizes), [0] * 3, [0] * 3]
+    place = [low.tolist(), core[0].tolist(), core[1].tolist(), list(task.source.sizes), [0] * 3, [0] * 3]
     # The chunks around it.
     first = core[0] // chunk * chunk
     shape = tuple((core[1] - first)[::-1].tolist())
@@ -385,15 +389,17 @@ def _parts(task: Task) -> dict[str, Any]:
     if len(part["vertices"]):
         arrays = {name: part[name] for name in names}
         _write(task, row, part_name(task.keys[0]), npz(**arrays))
-        _write(task, row, polygons_name(task.keys[0]), ply_of_part(arrays, task.source, options.scale))
+        write = vtp_of_part if task.parts_format == "vtp" else ply_of_part
+        content = write(arrays, task.source, options.scale)
+        _write(task, row, polygons_name(task.keys[0], task.parts_format), content)
     row.update({name: part[name] for name in ("euler", "solid_euler", "samples", "balls")})
     row.update(vertices=len(part["vertices"]), faces=len(part["face_offsets"]) - 1, halo=halo)
     return row
 
 
-def _checked(task: Task) -> dict[str, Any]:
-    """The Euler characteristics of the axis and of the solid of the core alone, as if it ended where the core does.
-    Neighbours share a layer of voxels, so that what is wrong between them is in one of them.
+def _alone(task: Task) -> tuple[npt.NDArray[np.float32], _Voxel, Place]:
+    """The values of the core as of a solid that ends where the core does, and the first voxel. Neighbours share a layer of
+    voxels, so that what is wrong between them is in one of them.
     """
     low = np.array(task.low)
     high = np.minimum(np.array(task.high) + 1, np.array(task.source.sizes))
@@ -406,15 +412,71 @@ def _checked(task: Task) -> dict[str, Any]:
             side[side == 0] = 1e-30  # outside, and other than 0
     sizes = tuple((high - low).tolist())
     alone = task._replace(low=(0, 0, 0), high=sizes, source=task.source._replace(sizes=sizes))
-    place = _place(alone, field, at - low - 1, np.full(3, -1), high - low + 1)
+    return field, at - 1, _place(alone, field, at - low - 1, np.full(3, -1), high - low + 1)
+
+
+def _euler_of(task: Task, field: npt.NDArray[np.float32], place: Place) -> dict[str, Any]:
+    """The Euler characteristics of the axis and of the solid of a core alone. Balls are moved as it likes, for it has no
+    neighbours; empty if none of the moves helps.
+    """
     options = task.options
-    part = _core.axis_of_block(
-        field, place, options.scale, task.largest_depth, options.seed, options.move, task.threads
-    )
-    return {name: part[name] for name in ("euler", "solid_euler")}
+    for attempt in range(MOVES):
+        move = options.move * 2**attempt
+        try:
+            part = _core.axis_of_block(
+                field, place, options.scale, task.largest_depth, options.seed, move, task.threads
+            )
+        except InconsistentResult:
+            continue
+        return {name: part[name] for name in ("euler", "solid_euler")}
+    return {}
 
 
-_WORK = {"depths": _depths, "part": _parts, "check": _checked}
+def _checked(task: Task) -> dict[str, Any]:
+    field, _, place = _alone(task)
+    return _euler_of(task, field, place)
+
+
+def _explained(task: Task) -> dict[str, Any]:
+    """What makes the Euler characteristics of a core differ, and a voxel where it does. Places of a kind are filled: if the
+    two agree then, it was these. Where: the first group of places that changes the difference, if all before it are
+    filled, too.
+    """
+    field, at, place = _alone(task)
+
+    def difference(filled: Any) -> int | None:
+        values = field.copy()
+        values[filled] = -np.maximum(np.abs(values[filled]), np.float32(1e-30))
+        euler = _euler_of(task, values, place)
+        return euler["euler"] - euler["solid_euler"] if euler else None
+
+    none = np.zeros(field.shape, bool)
+    known = difference(none)
+    if not known:
+        return {}
+    best: tuple[int, str, npt.NDArray[np.bool_]] | None = None
+    for kind, filled in repairs(field < 0, task.options.scale, task.threads):
+        left = difference(filled) if filled.any() else None
+        if left is not None and abs(left) < (abs(known) if best is None else best[0]):
+            best = (abs(left), kind, filled)
+        if left == 0:
+            break
+    if best is None:
+        return {}
+    _, cause, filled = best
+    voxels = np.argwhere(filled)
+    groups, number = np.unique(voxels // _GROUP, axis=0, return_inverse=True)
+    number = number.reshape(-1)
+    low, high = 0, len(groups)  # with the groups before `low` the difference is as it was, before `high` it is not
+    while high - low > 1:
+        middle = (low + high) // 2
+        some = none.copy()
+        some[tuple(voxels[number < middle].T)] = True
+        low, high = (middle, high) if difference(some) == known else (low, middle)
+    return {"cause": cause, "place": (at + voxels[number == low][0][::-1]).tolist()}
+
+
+_WORK = {"depths": _depths, "part": _parts, "check": _checked, "explain": _explained}
 
 
 def peak_memory() -> int:

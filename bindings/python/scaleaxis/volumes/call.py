@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 from .. import _core
 from ..batch.call import _storage as storage_of
@@ -30,7 +30,8 @@ from ..files import write_axis
 from ..stages import clean as clean_axis
 from ..stages import filter as filter_axis
 from ..stages import topology
-from .blocks import Options, Task, blocks_of, merged_labels, part_name, peak_memory, polygons_name
+from .blocks import MOVES, Options, Task, blocks_of, merged_labels, part_name, peak_memory, polygons_name
+from .causes import CAUSES
 from .formats import NANOMETRES
 from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, first_edge
@@ -38,14 +39,15 @@ from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
 from .worker import UNWRITTEN, Row, compute, known_row, stop_all
 
+PARTS_FORMATS = ("ply", "vtp")
 _FIRST_MOVE = 1e-4  # as the perturbation of `medial_axis`; doubled for all blocks if one of them contradicts itself
-_MOVES = 4
 _INCONSISTENT = "result"  # the code of InconsistentResult
 _MOST_FACES = 5_000_000  # of which Betti numbers are computed: seconds, beside minutes for the axis
 _ROOM = "make room or let it be written, and call again: what is done stays"
 # Bytes a face. Measured on axes of 200,000 and 600,000 faces: 457 stitched, 499 with the filter, 886 with cleaning.
 _STITCHED, _CLEANED = 550, 950
 _TOGETHER = 512  # voxels along an axis: within them depths are found by one process, a second or several for each
+_EXPLAINED = 8  # blocks: each takes as long as twenty checks of it
 _FINEST = 0.01  # voxels: the step of thickness, if the largest fits into 16 bits
 
 
@@ -67,6 +69,8 @@ class Report:
     stitching_memory: int  #: of this process
     cpu_seconds: float  #: of all blocks
     mismatches: dict[Triple, int]  #: of blocks, by their first voxel: Euler characteristic of the axis less the solid's
+    #: of the first of these blocks, what it is (growing, contact or thin: see docs/volumes.md) and a voxel where it is
+    causes: dict[Triple, tuple[str, Triple]]
     axis: MedialComplex | None = None
 
     @property
@@ -230,6 +234,7 @@ class _Wanted(NamedTuple):
     angle: float | None
     clean: float | None
     skeleton: bool
+    parts_format: str
 
 
 def _saved(storage: Storage, name: str, save: Callable[[Path], object]) -> None:
@@ -260,22 +265,23 @@ def _global_steps(storage: Storage, source: Source, complex: MedialComplex, want
     return topology(left) if len(left.faces) <= _MOST_FACES else None
 
 
-def _mismatches(runs: _Runs, parts: list[Task]) -> dict[Triple, int]:
+def _mismatches(runs: _Runs, parts: list[Task]) -> tuple[dict[Triple, int], dict[Triple, tuple[str, Triple]]]:
     """The blocks whose axis has another Euler characteristic than their solid, each as a solid of its own that ends
-    where its core does.
+    where its core does; and the causes.
     """
 
-    def tasks(move: float) -> list[Task]:
+    def rows(kind: str, parts: list[Task]) -> Iterator[tuple[Triple, Row]]:
         every = []
         for part in parts:
-            options = part.options._replace(move=move)
-            key = _key("check", part.source, part.low, part.high, options, part.largest_depth)
-            every.append(part._replace(kind="check", keys=[key], options=options))
-        return every
+            key = _key(kind, part.source, part.low, part.high, part.options, part.largest_depth)
+            every.append(part._replace(kind=kind, keys=[key]))
+        yield from zip((part.low for part in parts), runs.rows(every))
 
-    rows, checks = _axis_rows(runs, tasks)
-    differences = ((at.low, row["euler"] - row["solid_euler"]) for at, row in zip(checks, rows))
-    return {low: much for low, much in differences if much}
+    checks = ((low, row["euler"] - row["solid_euler"]) for low, row in rows("check", parts) if "euler" in row)
+    found = {low: much for low, much in checks if much}
+    wrong = [part for part in parts if part.low in found][:_EXPLAINED]
+    causes = {low: (row["cause"], tuple(row["place"])) for low, row in rows("explain", wrong) if "cause" in row}
+    return found, causes
 
 
 def _options(scale: float, smoothing: int, seed: int) -> None:
@@ -292,12 +298,12 @@ def _axis_rows(
 ) -> tuple[list[Row], list[Task]]:
     """Balls are moved more, in all blocks, until no block contradicts itself."""
     move = _FIRST_MOVE
-    for attempt in range(_MOVES):
+    for attempt in range(MOVES):
         try:
             every = tasks(move)
             return runs.rows(every, check), every
         except Error as error:
-            if error.code != _INCONSISTENT or attempt == _MOVES - 1:
+            if error.code != _INCONSISTENT or attempt == MOVES - 1:
                 raise
             move *= 2
     raise AssertionError
@@ -307,6 +313,7 @@ class _Stitched(NamedTuple):
     axis: MedialComplex | None
     topology: Topology | None
     mismatches: dict[Triple, int]
+    causes: dict[Triple, tuple[str, Triple]]
 
 
 def _check_stitching(faces: int, wanted: _Wanted, memory: int) -> None:
@@ -326,9 +333,9 @@ def _put_together(
     """The parts as one axis, and what is made of that."""
     storage = runs.storage
     differs = sum(row["euler"] for row in rows) != sum(row["solid_euler"] for row in rows)
-    mismatches = _mismatches(runs, every) if differs else {}
+    mismatches, causes = _mismatches(runs, every) if differs else ({}, {})
     if not wanted.stitch:
-        return _Stitched(None, None, mismatches)
+        return _Stitched(None, None, mismatches, causes)
     contents = (storage.read(part_name(at.keys[0])) for at, row in zip(every, rows) if row["vertices"])
     complex = stitched((part_of(content or b"") for content in contents), source, scale)
     euler = sum(row["euler"] for row in rows)
@@ -338,7 +345,7 @@ def _put_together(
             f"the parts do not fit: together their Euler characteristic is {euler}, stitched {count}", "volume.stitch"
         )
     _saved(storage, "axis.ply", lambda file: write_axis(file, complex, polygons=True))
-    return _Stitched(complex, _global_steps(storage, source, complex, wanted), mismatches)
+    return _Stitched(complex, _global_steps(storage, source, complex, wanted), mismatches, causes)
 
 
 def _write_report(storage: Storage, told: dict[str, Any]) -> None:
@@ -379,8 +386,10 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
         thickness = (step, chunk) if wanted.thickness else None
 
         def of(at: Block) -> Task:
-            told = (at.halo, at.largest_depth, wanted.axis, thickness)
+            told: tuple[Any, ...] = (at.halo, at.largest_depth, wanted.axis, thickness)
+            told += () if wanted.parts_format == "ply" else (wanted.parts_format,)
             more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": wanted.axis, "content": at.content}
+            more["parts_format"] = wanted.parts_format
             return task("part", at.low, at.high, moved, told, **more, thickness=thickness)
 
         return [of(at) for at in blocks]
@@ -407,14 +416,16 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
         stitching_memory=_core.peak_memory(),
         cpu_seconds=sum(row["seconds"] for row in [*depth_rows, *rows]),
         mismatches={} if found is None else found.mismatches,
+        causes={} if found is None else found.causes,
         axis=None if found is None else found.axis,
     )
     told = {name: value for name, value in vars(report).items() if name not in ("axis", "computed")}
     told |= {
         "agrees": report.agrees,
         "mismatches": [[*low, much] for low, much in report.mismatches.items()],
+        "causes": [[*low, cause, *place] for low, (cause, place) in report.causes.items()],
         "unit": source.unit,
-        "parts": [polygons_name(at.keys[0]) for at, row in zip(every, rows) if row.get("vertices")],
+        "parts": [polygons_name(at.keys[0], at.parts_format) for at, row in zip(every, rows) if row.get("vertices")],
     }
     _write_report(storage, json.loads(json.dumps(told, default=str)))
     return report
@@ -438,6 +449,7 @@ def volume(
     seed: int = 1,
     axis: bool = True,
     stitch: bool = True,
+    parts_format: Literal["ply", "vtp"] = "ply",
     thickness: bool = False,
     angle: float | None = None,
     clean: float | None = None,
@@ -450,7 +462,7 @@ def volume(
 
     source: .npy, Zarr, OME-Zarr or N5, NRRD or NIfTI of raw data, Neuroglancer precomputed.
     output: a folder, or a location of fsspec: gets `axis.ply`, `thickness.zarr`, `labels.csv`, `report.json`, `blocks`,
-        which has a PLY of each part of the axis.
+        which has a file of each part of the axis.
     memory: of all workers together. It decides how large blocks are, if `block` does not.
     workers: blocks at a time on this machine (default: its processors).
     scheduler: of Dask, as for `batch`; then `workers` says how many share the memory.
@@ -464,6 +476,7 @@ def volume(
     seed: of what is moved to be in general position.
     axis, thickness: what is wanted of each block.
     stitch: whether the parts of the axis are put together, which has to fit into the memory, .55 kB a face.
+    parts_format: of the parts: ply or vtp.
     angle, clean: of the stitched axis sheets below this object angle (degrees) and what has less erosion thickness than
         this length are removed, as by `filter` and `clean`: `filtered.ply`.
     skeleton: the curve skeleton of what is left: `skeleton.swc`, and `skeletons`, precomputed for Neuroglancer.
@@ -474,6 +487,8 @@ def volume(
     _options(scale, smoothing, seed)
     if not (axis or thickness):
         raise InvalidOption("nothing is wanted: ask for the axis or the thickness")
+    if parts_format not in PARTS_FORMATS:
+        raise InvalidOption(f"parts_format must be ply or vtp, not {parts_format!r}")
     if not (axis and stitch) and (skeleton or angle is not None or clean is not None):
         raise InvalidOption("angle, clean and skeleton are of the stitched axis: leave them out, or stitch")
     if block is not None and (not isinstance(block, int) or block < 32 or block % 32):
@@ -489,10 +504,10 @@ def volume(
     )
     storage = storage_of(output, storage_options)
     runs = _Runs(storage, scheduler, at_a_time, progress)
-    wanted = _Wanted(axis, stitch, thickness, angle, clean, skeleton)
+    wanted = _Wanted(axis, stitch, thickness, angle, clean, skeleton, parts_format)
     options = Options(float(scale), smoothing, seed, _FIRST_MOVE)
     with _writing(storage):
         return _results(runs, known, options, wanted, memory_of(memory), block)
 
 
-__all__ = ["Report", "memory_of", "volume"]
+__all__ = ["CAUSES", "PARTS_FORMATS", "Report", "memory_of", "volume"]

@@ -7,7 +7,7 @@ import argparse
 from collections.abc import Sequence
 
 from ..batch.exits import CANCELLED, DONE, FAILED, USAGE, Parser, status_of
-from .call import volume
+from .call import CAUSES, PARTS_FORMATS, volume
 
 _EXIT = f"""exit status:
   {DONE}  the results are there
@@ -48,6 +48,7 @@ def _parser() -> argparse.ArgumentParser:
     add("--seed", type=int, default=1, metavar="N", help="of what is moved to be in general position; default 1")
     add("--no-axis", dest="axis", action="store_false", help="no axis")
     add("--no-stitch", dest="stitch", action="store_false", help="leave the axis in parts, as many as there are blocks")
+    add("--parts-format", choices=PARTS_FORMATS, default="ply", help="of the parts; default ply")
     add("--thickness", action="store_true", help="local thickness, thickness.zarr")
     add("--angle", type=float, metavar="DEGREES", help="remove sheets of a smaller object angle from the stitched axis")
     add("--clean", type=float, metavar="LENGTH", help="remove what has less erosion thickness from it")
@@ -68,7 +69,9 @@ def main(arguments: Sequence[str]) -> int:
             if report.euler is not None:
                 print(f"{report.faces} faces; Euler characteristic {report.euler}, of the solid {report.solid_euler}")
                 for low, much in report.mismatches.items():
-                    print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}")
+                    cause, place = report.causes.get(low, ("", low))
+                    why = f": {CAUSES[cause]}, at voxel {', '.join(map(str, place))}" if cause else ""
+                    print(f"the block at voxel {', '.join(map(str, low))} differs by {much:+}{why}")
                 if report.agrees is False and not report.mismatches:
                     print("no block differs by itself: the difference is where blocks meet")
         return DONE

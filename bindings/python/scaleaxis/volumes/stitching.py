@@ -5,11 +5,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import numpy.typing as npt
 
 from ..data import MedialComplex, Polygons
+from ..files import write_axis
 from .sources import Source
 
 _Arrays = dict[str, npt.NDArray[np.float64]]
@@ -40,6 +43,14 @@ def ply_of_part(part: _Arrays, source: Source, scale: float) -> bytes:
         out.write(rows.tobytes())
     out.write(curves.tobytes())
     return out.getvalue()
+
+
+def vtp_of_part(part: _Arrays, source: Source, scale: float) -> bytes:
+    """The same by the library's writer, with the sheet of each face within the part."""
+    with TemporaryDirectory() as folder:
+        file = Path(folder) / "part.vtp"
+        write_axis(file, stitched([part], source, scale), polygons=True)
+        return file.read_bytes()
 
 
 def _numbered(vertices: npt.NDArray[np.float64]) -> tuple[npt.NDArray[np.int64], npt.NDArray[np.int64]]:
