@@ -18,7 +18,7 @@ import numpy.typing as npt
 import pytest
 import scaleaxis
 import scipy.ndimage
-from scaleaxis import FileError, InvalidOption
+from scaleaxis import FileError, InvalidOption, _core
 from scaleaxis.batch.command import main
 from scaleaxis.volumes import Report, blocks, call, sources, volume, worker
 from scaleaxis.volumes.causes import CAUSES
@@ -176,6 +176,49 @@ def test_a_mismatch_has_a_cause_and_a_place(
     words = [f"--{name}={value}" for name, value in options.items()]
     assert main(["volume", str(tmp_path / "volume.npy"), "-o", str(tmp_path / "out"), "--block=96", *words]) == 0
     assert f": {CAUSES[kind]}, at voxel {', '.join(map(str, place))}" in capsys.readouterr().out
+
+
+def test_a_block_that_cannot_be_compared(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As at s = 1: a comparison moves balls more by itself, and is left out if that does not help."""
+    mask, options, _ = hole_of_a_voxel()
+    axis_of_block = _core.axis_of_block
+    asked: list[float] = []
+
+    def contradicts(least: float) -> Any:
+        def of(field: Any, place: Any, scale: float, depth: float, seed: int, move: float, threads: int) -> Any:
+            asked.append(move)
+            if len(asked) > 1 and move < least:  # the first is the part itself
+                raise scaleaxis.InconsistentResult("it contradicts itself", "result")
+            return axis_of_block(field, place, scale, depth, seed, move, threads)
+
+        return of
+
+    monkeypatch.setattr(call, "in_threads", lambda tasks, *_: ([worker._row(task)] for task in tasks))
+    source = saved(tmp_path, mask)
+    for least, is_named in ((3e-4, True), (1.0, False)):
+        asked.clear()
+        monkeypatch.setattr(_core, "axis_of_block", contradicts(least))
+        report = run(source, tmp_path / str(least), block=96, **options)
+        assert report.agrees is False and bool(report.mismatches) == is_named
+        assert asked[:4] == [1e-4, 1e-4, 2e-4, 4e-4]
+
+
+def test_balls_of_all_blocks_are_moved_more(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """If one of them contradicts itself: at once, whatever is left of the first round."""
+    axis_of_block = _core.axis_of_block
+    asked: list[float] = []
+
+    def contradicts(field: Any, place: Any, scale: float, depth: float, seed: int, move: float, threads: int) -> Any:
+        asked.append(move)
+        if move < 2e-4 and len(asked) == 2:
+            raise scaleaxis.InconsistentResult("it contradicts itself", "result")
+        return axis_of_block(field, place, scale, depth, seed, move, threads)
+
+    monkeypatch.setattr(call, "in_threads", lambda tasks, *_: ([worker._row(task)] for task in tasks))
+    monkeypatch.setattr(_core, "axis_of_block", contradicts)
+    report = run(saved(tmp_path, tubes()), tmp_path / "out", block=32)
+    assert report.blocks > 3 and report.agrees
+    assert asked == [1e-4] * 2 + [2e-4] * report.blocks
 
 
 def well_composed(mask: Mask) -> Mask:

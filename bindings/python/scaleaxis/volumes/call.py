@@ -110,7 +110,8 @@ class _Runs:
 
     def rows(self, tasks: list[Task], check: Callable[[int], object] | None = None) -> list[Row]:
         """In the order of the tasks. Raises Error for the first that has no result, once all others are done; at once
-        if results cannot be written, or if `check` does, which is told how many faces there are so far.
+        if results cannot be written, if a block contradicts itself, or if `check` does, which is told how many faces there
+        are so far.
         """
         faces = 0
         counts = Counts(len(tasks))
@@ -134,7 +135,10 @@ class _Runs:
                     raise Error(
                         f"{self.storage.root}: {_place(by_key[row['key']])}: {row['error']}: {_ROOM}", UNWRITTEN
                     )
+                if row.get("code") == _INCONSISTENT:  # then all are computed anew
+                    raise Error(f"{_place(by_key[row['key']])}: {row['error']}", _INCONSISTENT)
                 rows[row["key"]] = row
+                self.computed += "error" not in row
                 faces += row.get("faces", 0)
                 if check is not None:
                     check(faces)
@@ -142,7 +146,6 @@ class _Runs:
                 counts.done += "error" not in row
                 counts.failed += "error" in row
                 tell()
-        self.computed += counts.done
         for task in tasks:
             row = rows[task.keys[0]]
             if "error" in row:
