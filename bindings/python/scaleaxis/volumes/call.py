@@ -391,8 +391,13 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
         def of(at: Block) -> Task:
             told: tuple[Any, ...] = (at.halo, at.largest_depth, wanted.axis, thickness)
             told += () if wanted.parts_format == "ply" else (wanted.parts_format,)
-            more = {"halo": at.halo, "largest_depth": at.largest_depth, "wants_axis": wanted.axis, "content": at.content}
-            more["parts_format"] = wanted.parts_format
+            more = {
+                "halo": at.halo,
+                "largest_depth": at.largest_depth,
+                "wants_axis": wanted.axis,
+                "content": at.content,
+                "parts_format": wanted.parts_format,
+            }
             return task("part", at.low, at.high, moved, told, **more, thickness=thickness)
 
         return [of(at) for at in blocks]
