@@ -161,6 +161,7 @@ def test_a_worker_of_dask_is_killed(source: Path, tmp_path: Path, log: Path, exp
 
 def test_the_scheduler_of_dask_is_killed(source: Path, tmp_path: Path, log: Path, expected: dict[str, bytes]) -> None:
     import dask
+    import distributed  # noqa: F401 - what it sets at first must not go with what is set below
 
     file, output = tmp_path / "scheduler.json", tmp_path / "out"
     command = [sys.executable, "-m", "dask"]
