@@ -9,13 +9,13 @@
 #include <map>
 #include <queue>
 #include <set>
-#include <sstream>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include "base/grouped.hpp"
+#include "base/text.hpp"
 #include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -250,7 +250,7 @@ std::vector<Diagnostic> tree_warnings(const Skeleton& skeleton) {
     const auto trees = std::ranges::count(tree.parents, kNone);
     if (!tree.cuts.empty()) {
         const Point place = midpoint(skeleton.nodes[tree.cuts[0][0]], skeleton.nodes[tree.cuts[0][1]]);
-        std::ostringstream text;
+        Words text;
         text << "trees have no loops: " << tree.cuts.size() << (tree.cuts.size() == 1 ? " is" : " are")
              << " cut, the first near (" << place.x << ", " << place.y << ", " << place.z
              << "); GraphML, JSON and VTP keep them";
