@@ -89,7 +89,7 @@ export interface OutputOptions<Format extends string> {
 export type AxisFormat = 'ply' | 'ma' | 'vtp' | 'obj' | 'glb';
 export type FiltrationFormat = 'ply' | 'vtp';
 export type SurfaceFormat = 'ply' | 'vtp' | 'glb';
-export type SkeletonFormat = 'swc' | 'graphml' | 'json' | 'vtp' | 'ply';
+export type SkeletonFormat = 'swc' | 'csv' | 'graphml' | 'json' | 'vtp' | 'ply';
 
 export type AxisOptions = Execution & PipelineOptions & OutputOptions<AxisFormat>;
 export type FiltrationOptions = Execution & Omit<PipelineOptions, 'scale'> & OutputOptions<FiltrationFormat>;

@@ -11,7 +11,7 @@ import './page.css';
 const FUNCTIONS = {
     axis: { label: 'Axis', formats: ['ply', 'glb', 'ma', 'obj', 'vtp'] },
     filtration: { label: 'All scales', formats: ['ply', 'vtp'] },
-    skeleton: { label: 'Skeleton', formats: ['swc', 'ply', 'graphml', 'json', 'vtp'] },
+    skeleton: { label: 'Skeleton', formats: ['swc', 'csv', 'ply', 'graphml', 'json', 'vtp'] },
     thickness: { label: 'Thickness', formats: ['ply', 'glb', 'vtp'] },
 } as const;
 type FunctionName = keyof typeof FUNCTIONS;
