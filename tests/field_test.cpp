@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <limits>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -98,11 +98,11 @@ TEST(Field, ImageFileIsWhatItsHeadSays) {
     const fs::path file = fs::temp_directory_path() / ("scaleaxis-field-" + std::to_string(getpid()) + ".nrrd");
     const Image image = signed_distance_image(BallUnion(chain_of_balls(2, 1.0, 0.7)), 20);
     write_image(file, image);
-    std::ifstream stream(file, std::ios::binary);
-    std::ostringstream bytes;
-    bytes << stream.rdbuf();
+    const std::string content = [&] {  // closed again: Windows removes no open file
+        std::ifstream stream(file, std::ios::binary);
+        return std::string(std::istreambuf_iterator<char>(stream), {});
+    }();
     fs::remove(file);
-    const std::string content = bytes.str();
     const std::size_t end = content.find("\n\n");
     ASSERT_NE(end, std::string::npos);
     const std::string head = content.substr(0, end + 1);
