@@ -30,11 +30,7 @@ TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order
 
 Bvh build_bvh(TriangleMesh mesh) {
     std::vector<Box> boxes(mesh.triangles.size());
-    for_each_index(boxes.size(), [&](std::size_t t) {
-        for (const Index v : mesh.triangles[t]) {
-            boxes[t].extend(mesh.vertices[v]);
-        }
-    });
+    for_each_index(boxes.size(), [&](std::size_t t) { boxes[t] = box_of_triangle(mesh, static_cast<Index>(t)); });
     Bvh bvh{build_box_tree(boxes), {}};
     bvh.mesh = reordered(mesh, bvh.order);
     return bvh;

@@ -113,19 +113,6 @@ bool meet(const TriangleMesh& mesh, Index i, Index j, double size) {
     }
 }
 
-Box box_of(const TriangleMesh& mesh, Index t) {
-    Box box;
-    for (const Index v : mesh.triangles[t]) {
-        box.extend(mesh.vertices[v]);
-    }
-    return box;
-}
-
-bool overlap(const Box& a, const Box& b) {
-    return (a.min.x <= b.max.x) & (b.min.x <= a.max.x) & (a.min.y <= b.max.y) & (b.min.y <= a.max.y) &
-           (a.min.z <= b.max.z) & (b.min.z <= a.max.z);
-}
-
 double longest_side(const Box& a, const Box& b) {
     return std::max({std::max(a.max.x, b.max.x) - std::min(a.min.x, b.min.x),
                      std::max(a.max.y, b.max.y) - std::min(a.min.y, b.min.y),
@@ -151,13 +138,13 @@ SelfIntersections self_intersections(const Bvh& bvh) {
         std::array<Box, Bvh::kLeafSize> boxes;
         Box leaf;
         for (Index i = begin; i < end; ++i) {
-            boxes[i - begin] = box_of(bvh.mesh, i);
+            boxes[i - begin] = box_of_triangle(bvh.mesh, i);
             leaf.extend(boxes[i - begin]);
         }
         for_each_leaf_near(bvh, node, child, [&](Index first, Index count) {
             // Of two leaves the earlier one tests their pairs.
             for (Index j = std::max(first, begin + 1); j < first + count && first >= begin; ++j) {
-                const Box box = box_of(bvh.mesh, j);
+                const Box box = box_of_triangle(bvh.mesh, j);
                 if (!overlap(leaf, box)) {
                     continue;
                 }

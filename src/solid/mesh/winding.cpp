@@ -67,20 +67,11 @@ int winding_from(const Bvh& bvh, const Box& box, const Point& p, const KnownWind
 // Testing more triangles one by one takes as long as looking for those near a segment in the tree.
 constexpr std::size_t kFewTriangles = 12;
 
-bool do_meet(const Box& a, const Box& b) {
-    return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && b.min.x <= a.max.x && b.min.y <= a.max.y &&
-           b.min.z <= a.max.z;
-}
-
 /// The triangles whose boxes meet a box, if they are few.
 std::optional<std::vector<Index>> few_triangles_near(const Bvh& bvh, const Box& box) {
     std::vector<Index> near;
     const bool is_few = !any_near_box(bvh, box, [&](Index t) {
-        Box around;
-        for (const Index v : bvh.mesh.triangles[t]) {
-            around.extend(bvh.mesh.vertices[v]);
-        }
-        if (do_meet(around, box)) {
+        if (overlap(box_of_triangle(bvh.mesh, t), box)) {
             near.push_back(t);
         }
         return near.size() > kFewTriangles;
