@@ -581,7 +581,7 @@ def test_a_model_given_twice_to_workers_is_computed_once(tmp_path, debug):
     (box,) = write_boxes(tmp_path / "models", 1)
     task = worker.Task([Model(str(box), COARSE)], ["0" * 32], Storage(str(tmp_path / "out")), ".ply", 1, None, None)
     (first,), (second,) = worker.compute(task), worker.compute(task)
-    worker.close_idle()
+    worker.servers.close_idle()
     assert first["status"] == "done" and {**first, "ended": ""} == {**second, "ended": ""}
     assert sum(debug.computed().values()) == 1
 

@@ -348,12 +348,12 @@ def test_voids_are_not_read(place: Any, kind: str, tmp_path: Path, monkeypatch: 
 
 def test_processes_of_blocks_are_forks_of_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     started = []
-    start = worker._start
-    monkeypatch.setattr(worker, "_start", lambda: started.append(start()) or started[-1])
+    start = worker.servers.start
+    monkeypatch.setattr(worker.servers, "start", lambda: started.append(start()) or started[-1])
     report = run(saved(tmp_path, tubes()), tmp_path / "out", block=32, workers=1)
     # One for depths, one for parts.
     assert report.computed > 4 and [server.returncode for server in started] == [0, 0]
-    assert not worker._idle and not worker._busy
+    assert not worker.servers.idle and not worker.servers.busy
 
 
 def test_thickness_is_that_of_the_definition(tmp_path: Path) -> None:

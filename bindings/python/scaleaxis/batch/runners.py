@@ -17,7 +17,7 @@ from itertools import islice
 from typing import Any
 
 from ..errors import Error, InvalidOption
-from .worker import Row, compute, rows_of, stop_all
+from .worker import Row, compute, rows_of, servers
 
 _STAYS = "call again, what is done stays"
 # Dask's own errors of connections are kinds of OSError; before Python 3.11 the other one is none.
@@ -36,7 +36,7 @@ def processors() -> int:
 
 
 def in_threads(
-    tasks: Iterator[Any], workers: int, work: Work = compute, stop: Callable[[], None] = stop_all
+    tasks: Iterator[Any], workers: int, work: Work = compute, stop: Callable[[], None] = servers.stop_all
 ) -> Iterator[list[Row]]:
     """As many models at a time as there are workers."""
     with ThreadPoolExecutor(workers) as pool:
@@ -107,7 +107,7 @@ def dask_client(scheduler: Any, workers: int | None) -> Iterator[Any]:
             try:
                 yield client
             finally:
-                stop_all()  # the cluster waits for its threads
+                servers.stop_all()  # the cluster waits for its threads
 
 
 @contextmanager

@@ -16,11 +16,13 @@ import signal
 import sys
 import time
 import warnings
+from functools import partial
 from typing import Any
 
 from .. import errors
 from ..pipeline import axis
 from ..result import Axis
+from .servers import forked, leave_signals_to_caller
 
 DEBUG = "SCALEAXIS_BATCH_DEBUG"
 """For tests: a JSON object; "crash", "hang", "eat" and "slow" are parts of names of models that do so, "log" is a file
@@ -101,20 +103,16 @@ def _limit_memory(most_bytes: int | None) -> None:
 
 
 def _run_forked(request: dict[str, Any], pipe: int) -> None:
-    """In the process of the model. Never returns."""
+    """In the process of the model."""
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+    os.dup2(os.open(request["messages"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), 2)
+    os.dup2(2, 1)
     try:
-        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        os.dup2(os.open(request["messages"], os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), 2)
-        os.dup2(2, 1)
-        signal.signal(signal.SIGTERM, signal.SIG_DFL)
-        try:
-            _limit_memory(request["memory_limit"])
-            answer = _computed(request)
-        except BaseException as error:
-            answer = _failure(error)
-        os.write(pipe, json.dumps(answer).encode())
-    finally:
-        os._exit(0)
+        _limit_memory(request["memory_limit"])
+        answer = _computed(request)
+    except BaseException as error:
+        answer = _failure(error)
+    os.write(pipe, json.dumps(answer).encode())
 
 
 def _answer_of(pipe: int, process: int, time_limit: float | None) -> tuple[bytes, bool]:
@@ -154,12 +152,7 @@ def _signal_name(number: int) -> str:
 
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     start = time.monotonic()
-    read_end, write_end = os.pipe()
-    process = os.fork()
-    if process == 0:
-        os.close(read_end)
-        _run_forked(request, write_end)
-    os.close(write_end)
+    process, read_end = forked(partial(_run_forked, request))
     text, is_late = _answer_of(read_end, process, request["time_limit"])
     os.close(read_end)
     _, status, usage = os.wait4(process, 0)
@@ -183,13 +176,7 @@ def _answer(request: dict[str, Any]) -> dict[str, Any]:
 def main() -> None:
     """Answers requests until standard input ends."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
-    # Both are for the caller, who then closes the input; schedulers send them to all processes of a job.
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGTERM, signal.SIG_IGN)
+    leave_signals_to_caller()
     gc.freeze()  # what is loaded stays shared with the processes of the models
     for line in iter(sys.stdin.buffer.readline, b""):
         print(json.dumps(_answer(json.loads(line))), file=answers, flush=True)
-
-
-if __name__ == "__main__":
-    main()

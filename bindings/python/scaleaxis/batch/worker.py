@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a worker does with a model: passes it to a server (server.py), and puts the result where it belongs.
 
-Workers are threads of this process, or of Dask's; each call has a server to itself, and servers are used again.
+Workers are threads of this process, or of Dask's.
 """
 
 from __future__ import annotations
@@ -12,8 +12,6 @@ import json
 import os
 import platform
 import shutil
-import subprocess
-import sys
 import tempfile
 from datetime import datetime, timezone
 from pathlib import Path
@@ -22,13 +20,12 @@ from typing import Any, NamedTuple
 from .. import _core
 from .models import Model
 from .options import Options, scale_of
+from .servers import ServerPool
 from .storage import Storage, is_url, opened
 
 Row = dict[str, Any]
 
-# Changes of both are atomic.
-_idle: list[subprocess.Popen[bytes]] = []
-_busy: set[subprocess.Popen[bytes]] = set()
+servers = ServerPool("scaleaxis.batch.server")
 
 
 class Task(NamedTuple):
@@ -99,65 +96,11 @@ def known_row(model: Model, key: str, storage: Storage, extension: str) -> Row |
     return {**row, **row_of(model, key, "done")}
 
 
-def _start() -> subprocess.Popen[bytes]:
-    # Models are the parallel part: no threads of numpy; and nothing is imported from the current folder.
-    environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "PYTHONSAFEPATH": "1"}
-    command = [sys.executable, "-m", "scaleaxis.batch.server"]
-    return subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=environment)
-
-
-def _end(server: subprocess.Popen[bytes]) -> None:
-    for pipe in (server.stdin, server.stdout):
-        try:
-            assert pipe is not None
-            pipe.close()
-        except OSError:
-            pass
-    server.wait()
-
-
-def close_idle() -> None:
-    """Ends the servers that are not at work."""
-    while True:
-        try:
-            server = _idle.pop()
-        except IndexError:
-            return
-        _end(server)
-
-
-def stop_all() -> None:
-    """Ends all servers, and the models at work: they notice the end of their input."""
-    close_idle()
-    for server in list(_busy):
-        assert server.stdin is not None
-        server.stdin.close()
-
-
 def _ask(request: dict[str, Any]) -> dict[str, Any]:
-    try:
-        server = _idle.pop()
-    except IndexError:
-        server = _start()
-    assert server.stdin is not None and server.stdout is not None
-    _busy.add(server)
-    answer = b""
-    try:
-        server.stdin.write(json.dumps(request).encode() + b"\n")
-        server.stdin.flush()
-        answer = server.stdout.readline()
-    except (BrokenPipeError, ValueError):  # ValueError: its input is closed
-        pass
-    except BaseException:  # an interrupt: this answer would be taken for that of the next model
-        _end(server)
-        raise
-    finally:
-        _busy.discard(server)
-    if not answer.endswith(b"\n"):
-        _end(server)
-        return {"lost": True, "error": f"the process that starts models has ended, with status {server.returncode}"}
-    _idle.append(server)
-    known: dict[str, Any] = json.loads(answer)
+    line, status, _ = servers.ask(json.dumps(request).encode() + b"\n")
+    if not line:
+        return {"lost": True, "error": f"the process that starts models has ended, with status {status}"}
+    known: dict[str, Any] = json.loads(line)
     return known
 
 

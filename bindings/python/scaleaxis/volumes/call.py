@@ -37,7 +37,7 @@ from .neuroglancer import write_precomputed
 from .plan import Block, DepthMap, first_edge
 from .sources import Source, Triple, source_of
 from .stitching import part_of, stitched
-from .worker import UNWRITTEN, Row, compute, known_row, stop_all
+from .worker import UNWRITTEN, Row, compute, known_row, servers
 
 PARTS_FORMATS = ("ply", "vtp")
 _FIRST_MOVE = 1e-4  # as the perturbation of `medial_axis`; doubled for all blocks if one of them contradicts itself
@@ -154,7 +154,7 @@ class _Runs:
 
     def _computed(self, tasks: Iterator[Task]) -> Iterator[list[Row]]:
         if self.scheduler is None:
-            yield from in_threads(tasks, self.workers, compute, stop_all)
+            yield from in_threads(tasks, self.workers, compute, servers.stop_all)
         else:
             with dask_client(self.scheduler, self.workers) as client:
                 yield from on_dask(tasks, client, compute, _lost)
