@@ -8,10 +8,10 @@
 
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -168,9 +168,7 @@ MedialComplex grown(MedialComplex complex) {
 }
 
 void check_scale(double scale) {
-    if (!(scale >= 1.0) || !std::isfinite(scale)) {
-        throw InvalidOption("the scale must be a number of at least 1");
-    }
+    require(scale >= 1.0 && std::isfinite(scale), "the scale must be a number of at least 1");
 }
 
 std::vector<Ball> balls_at_vertices(const MedialComplex& complex) {

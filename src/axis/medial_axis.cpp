@@ -13,6 +13,7 @@
 #include "axis/exact_axis.hpp"
 #include "axis/inner_voronoi.hpp"
 #include "balls/union/union_data.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
 #include "base/text.hpp"
@@ -181,9 +182,8 @@ MedialAxis axis_of_perturbed(std::span<const Ball> balls, const MedialAxisOption
 }
 
 void validate(const MedialAxisOptions& options) {
-    if (!(options.perturbation >= 0.0 && options.perturbation <= kMaxPerturbation)) {
-        throw InvalidOption("the perturbation must lie between 0 and 0.01 radii");
-    }
+    require(options.perturbation >= 0.0 && options.perturbation <= kMaxPerturbation,
+            "the perturbation must lie between 0 and 0.01 radii");
 }
 
 /// Reports the progress of a repeated computation, which itself begins again.

@@ -7,8 +7,8 @@
 
 #include "balls/distance_image.hpp"
 #include "balls/union/union_data.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -29,10 +29,8 @@ Image empty_image(const Box& box, Index resolution) {
         image.sizes[axis] = static_cast<Index>(std::ceil(sides[axis] / spacing - 1e-9) + 2.0 * kFieldMargin) + 1;
         points *= image.sizes[axis];
     }
-    if (!(points * sizeof(float) < 0x1p40)) {
-        throw InvalidOption("an image of resolution " + std::to_string(resolution) +
-                            " would have more than 2^38 points");
-    }
+    require(points * sizeof(float) < 0x1p40,
+            "an image of resolution " + std::to_string(resolution) + " would have more than 2^38 points");
     const auto begin = [&](int axis) { return 0.5 * spacing * (image.sizes[axis] - 1); };
     image.origin = midpoint(box.min, box.max) - Point{begin(0), begin(1), begin(2)};
     image.values.resize(static_cast<std::size_t>(points));
@@ -42,9 +40,8 @@ Image empty_image(const Box& box, Index resolution) {
 }  // namespace
 
 Image distance_image(const Box& box, Index resolution, const DistanceWithin& distance, const Execution& execution) {
-    if (resolution < kLeastResolution) {
-        throw InvalidOption("the resolution of an image must be at least " + std::to_string(kLeastResolution));
-    }
+    require(resolution >= kLeastResolution,
+            "the resolution of an image must be at least " + std::to_string(kLeastResolution));
     return in_arena(execution, [&] {
         Image image = empty_image(box, resolution);
         const auto [width, height, depth] = image.sizes;

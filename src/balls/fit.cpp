@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
@@ -274,9 +275,7 @@ void check_knows_nearest(const Solid& solid) {
 
 FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOptions& options,
                 const Execution& execution) {
-    if (!(options.slack > 0.0) || !std::isfinite(options.slack)) {
-        throw InvalidOption("the slack of a fit must be a positive number");
-    }
+    require(options.slack > 0.0 && std::isfinite(options.slack), "the slack of a fit must be a positive number");
     check_knows_nearest(solid);
     const Box bounds = solid.bounds();
     return in_arena(execution, [&] {

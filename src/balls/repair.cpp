@@ -16,13 +16,13 @@
 #include "balls/dual_complex.hpp"
 #include "balls/inward_seeds.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
-#include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
@@ -677,12 +677,10 @@ class Repair {
 };
 
 void validate(const RepairOptions& options) {
-    if (!(options.max_rounds >= 0 && options.max_rounds <= 100)) {
-        throw InvalidOption("the number of rounds of a repair must lie between 0 and 100");
-    }
-    if (!(options.growth_limit >= 0.0) || !std::isfinite(options.growth_limit)) {
-        throw InvalidOption("the growth limit of a repair must be a number of at least 0");
-    }
+    require(options.max_rounds >= 0 && options.max_rounds <= 100,
+            "the number of rounds of a repair must lie between 0 and 100");
+    require(options.growth_limit >= 0.0 && std::isfinite(options.growth_limit),
+            "the growth limit of a repair must be a number of at least 0");
 }
 
 double least_radius_of(const RepairOptions& options) { return options.topology ? 0.0 : kLeastRadius; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The errors of files by their codes, which docs/diagnostics.md lists.
+/// Errors in short: of options, and of files by their codes, which docs/diagnostics.md lists.
 #pragma once
 
 #include <cstdint>
@@ -10,6 +10,13 @@
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
+
+/// \throws InvalidOption with this message unless the condition holds
+inline void require(bool condition, const std::string& message) {
+    if (!condition) {
+        throw InvalidOption(message);
+    }
+}
 
 /// The file ends before the data that its head announces, or within an item.
 inline FileError truncated(std::string message) { return FileError(Diagnostic{"file.truncated", std::move(message)}); }

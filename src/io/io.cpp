@@ -254,15 +254,13 @@ void check_vertex_values(std::size_t vertices, std::span<const VertexValues> all
         const bool is_word = !name.empty() && std::ranges::all_of(name, [](char c) {
             return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
         });
-        if (!is_word || std::ranges::find(names, name) != names.end()) {
-            throw InvalidOption(quoted(std::string_view(name)) +
-                                " cannot be the name of values of vertices: it must consist of letters, digits and "
-                                "underscores, and stand for nothing else in the file");
-        }
-        if (values.size() != vertices) {
-            throw InvalidOption("there are " + std::to_string(values.size()) + " values " +
-                                quoted(std::string_view(name)) + " for " + std::to_string(vertices) + " vertices");
-        }
+        require(is_word && std::ranges::find(names, name) == names.end(),
+                quoted(std::string_view(name)) +
+                    " cannot be the name of values of vertices: it must consist of letters, digits and "
+                    "underscores, and stand for nothing else in the file");
+        require(values.size() == vertices, "there are " + std::to_string(values.size()) + " values " +
+                                               quoted(std::string_view(name)) + " for " + std::to_string(vertices) +
+                                               " vertices");
         names.push_back(name);
     }
 }
@@ -606,9 +604,7 @@ void write_mesh(const path& file, const TriangleMesh& mesh, std::string_view for
 void write_surface(const path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
                    std::string_view format) {
     check_vertex_values(mesh.vertices.size(), values);
-    if (values.empty() || mesh.vertices.empty()) {
-        throw InvalidOption("a coloured surface needs vertices, and a value of each");
-    }
+    require(!values.empty() && !mesh.vertices.empty(), "a coloured surface needs vertices, and a value of each");
     write(file, format, &Format::write_surface, mesh, values);
 }
 
@@ -625,17 +621,15 @@ std::vector<Diagnostic> write_skeleton(const path& file, const Skeleton& skeleto
 
 void write_parts(const path& file, const TriangleMesh& surface, const Skeleton& skeleton, std::span<const Index> nodes,
                  std::string_view format) {
-    if (nodes.size() != surface.vertices.size()) {
-        throw InvalidOption("there are " + std::to_string(nodes.size()) + " nodes for " +
-                            std::to_string(surface.vertices.size()) + " vertices of a surface");
-    }
+    require(nodes.size() == surface.vertices.size(), "there are " + std::to_string(nodes.size()) + " nodes for " +
+                                                         std::to_string(surface.vertices.size()) +
+                                                         " vertices of a surface");
     write(file, format, &Format::write_parts, surface, skeleton, nodes);
 }
 
 void write_shells(const path& file, const ShellMesh& shells, const ShellFileOptions& options, std::string_view format) {
-    if (options.order < 0 || options.order > 2) {
-        throw InvalidOption("the order of a shell mesh must be 1 or 2, or 0 for the usual one of the format");
-    }
+    require(options.order >= 0 && options.order <= 2,
+            "the order of a shell mesh must be 1 or 2, or 0 for the usual one of the format");
     const Format& found = select_output(file, format, &Format::write_shells);
     OutputFile out(file);
     found.write_shells(out, shells, (options.order == 0 ? found.shell_order : options.order) == 2);

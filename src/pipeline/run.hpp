@@ -16,13 +16,6 @@
 
 namespace scaleaxis::inline v1 {
 
-/// \throws InvalidOption with this message unless the condition holds
-inline void require(bool condition, const std::string& message) {
-    if (!condition) {
-        throw InvalidOption(message);
-    }
-}
-
 /// Seconds since it was made.
 class Stopwatch {
    public:

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/random.hpp"
@@ -211,12 +212,10 @@ std::string_view name_of(SolidKind kind) {
 
 void validate(const SolidOptions& options) {
     const auto check = [&](SolidKind kind, double length, const std::string& name, const std::string& its_kind) {
-        if (options.kind != kind && length != 0.0) {
-            throw InvalidOption("the " + name + " has no effect: it is for the solid " + its_kind);
-        }
-        if (options.kind == kind && !(length > 0.0 && std::isfinite(length))) {
-            throw InvalidOption("the solid " + its_kind + " needs a positive length: the " + name);
-        }
+        require(options.kind == kind || length == 0.0,
+                "the " + name + " has no effect: it is for the solid " + its_kind);
+        require(options.kind != kind || (length > 0.0 && std::isfinite(length)),
+                "the solid " + its_kind + " needs a positive length: the " + name);
     };
     check(SolidKind::kWrap, options.opening, "opening", "wrap");
     check(SolidKind::kThicken, options.thickness, "thickness", "thicken");

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -176,22 +177,13 @@ void validate(const Solid& solid, const SamplingOptions& options) {
     if (!(diagonal > 0.0) || !std::isfinite(diagonal)) {
         throw UnusableInput("the solid is empty or not bounded: its bounding box has no finite diagonal");
     }
-    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
-        throw InvalidOption("the sampling tolerance must be a positive length");
-    }
-    if (!(options.facet_distance > 0.0)) {
-        throw InvalidOption("the distance of the surface from its facets must be a positive length");
-    }
-    if (!(options.growth_limit >= 1.0)) {
-        throw InvalidOption("the growth of the number of samples must be limited to a factor of 1 at least");
-    }
+    require(options.tolerance > 0.0 && std::isfinite(options.tolerance),
+            "the sampling tolerance must be a positive length");
+    require(options.facet_distance > 0.0, "the distance of the surface from its facets must be a positive length");
+    require(options.growth_limit >= 1.0,
+            "the growth of the number of samples must be limited to a factor of 1 at least");
     for (const auto& [a, b] : options.creases) {
-        if (!is_finite(a) || !is_finite(b)) {
-            throw InvalidOption("the creases must have finite coordinates");
-        }
-    }
-    if (options.max_samples < 1) {
-        throw InvalidOption("the largest number of samples must be at least 1");
+        require(is_finite(a) && is_finite(b), "the creases must have finite coordinates");
     }
 }
 

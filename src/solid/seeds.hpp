@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "scaleaxis/errors.hpp"
+#include "base/faults.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -14,10 +14,8 @@ namespace scaleaxis::inline v1 {
 /// \throws InvalidOption if `count` seeds are more than there are indices
 inline void check_number_of_seeds(double count) {
     constexpr Index kMost = std::numeric_limits<Index>::max();
-    if (!(count < kMost)) {
-        throw InvalidOption("too many samples: the surface would take more than " + std::to_string(kMost) +
-                            " seeds; choose a larger tolerance");
-    }
+    require(count < kMost, "too many samples: the surface would take more than " + std::to_string(kMost) +
+                               " seeds; choose a larger tolerance");
 }
 
 }  // namespace scaleaxis::inline v1

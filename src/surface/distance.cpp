@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "balls/union/union_data.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "sampling/restricted_facets.hpp"
 #include "scaleaxis/errors.hpp"
@@ -180,9 +181,7 @@ OneSidedDistance result_of(const Tally& tally, double error) {
 
 void check_number_of_samples(double area, double spacing) {
     constexpr double kMost = 1e10;
-    if (!(area / (spacing * spacing) < kMost)) {
-        throw InvalidOption("the spacing would take more than 1e10 points; choose a larger one");
-    }
+    require(area / (spacing * spacing) < kMost, "the spacing would take more than 1e10 points; choose a larger one");
 }
 
 OneSidedDistance one_sided(const TriangleMesh* target, const DistanceTo& distance, const DistanceOptions& options,
@@ -295,12 +294,9 @@ SurfaceDistance surface_distance(const Surface& a, const Surface& b, const Dista
                                  const Execution& execution) {
     validate(a);
     validate(b);
-    if (!(options.spacing > 0.0) || !std::isfinite(options.spacing)) {
-        throw InvalidOption("the spacing of the points on a surface must be a positive length");
-    }
-    if (!(options.accuracy >= 0.0)) {
-        throw InvalidOption("the accuracy of a distance must not be negative");
-    }
+    require(options.spacing > 0.0 && std::isfinite(options.spacing),
+            "the spacing of the points on a surface must be a positive length");
+    require(options.accuracy >= 0.0, "the accuracy of a distance must not be negative");
     return in_arena(execution, [&] {
         // Without the progress of the stages within, which would begin again for each side.
         const Execution inner{execution.threads, {}, execution.cancel};

@@ -4,15 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scaleaxis/errors.hpp"
+#include "base/faults.hpp"
 
 namespace scaleaxis::inline v1 {
 
 EnvelopeBoundary::EnvelopeBoundary(const Envelope& envelope, double spacing) : envelope_(envelope), spacing_(spacing) {
     constexpr double kMost = 1e11;
-    if (!(envelope.data().area_of_parts() / (spacing * spacing) < kMost)) {
-        throw InvalidOption("the spacing would take more than 1e11 points; choose a larger one");
-    }
+    require(envelope.data().area_of_parts() / (spacing * spacing) < kMost,
+            "the spacing would take more than 1e11 points; choose a larger one");
     points_ = envelope.data().boundary_points(spacing);
     std::vector<Point> places;
     for (const SurfacePoint& point : points_) {

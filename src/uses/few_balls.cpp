@@ -9,6 +9,7 @@
 #include <string>
 #include <utility>
 
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -41,28 +42,17 @@ constexpr int kMostAdded = 60;
 
 void check(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
            const FewBallsOptions& options) {
-    if (!options.count && !options.error) {
-        throw InvalidOption("the number of balls or the error is needed");
-    }
-    if (options.count && options.error && options.kind == FewBallsKind::kInside) {
-        throw InvalidOption("balls inside stick out nowhere: their number or the error is needed, and not both");
-    }
-    if (options.count && *options.count < 1) {
-        throw InvalidOption("the number of balls must be at least 1");
-    }
-    if (options.error && !(*options.error > 0.0 && std::isfinite(*options.error))) {
-        throw InvalidOption("the error must be a positive number");
-    }
-    if (options.search_size < 100) {
-        throw InvalidOption("the search needs at least 100 points");
-    }
-    if (!(options.effort > 0.0 && options.effort <= 1e6)) {
-        throw InvalidOption("the effort must be positive, and at most 1e6");
-    }
+    require(options.count || options.error, "the number of balls or the error is needed");
+    require(!options.count || !options.error || options.kind != FewBallsKind::kInside,
+            "balls inside stick out nowhere: their number or the error is needed, and not both");
+    require(!options.count || *options.count >= 1, "the number of balls must be at least 1");
+    require(!options.error || (*options.error > 0.0 && std::isfinite(*options.error)),
+            "the error must be a positive number");
+    require(options.search_size >= 100, "the search needs at least 100 points");
+    require(options.effort > 0.0 && options.effort <= 1e6, "the effort must be positive, and at most 1e6");
     for (const auto& [normal, offset] : options.clip) {
-        if (!(norm(normal) > 0.0 && std::isfinite(norm(normal)) && std::isfinite(offset))) {
-            throw InvalidOption("a plane that balls must not reach through needs a normal other than 0, and an offset");
-        }
+        require(norm(normal) > 0.0 && std::isfinite(norm(normal)) && std::isfinite(offset),
+                "a plane that balls must not reach through needs a normal other than 0, and an offset");
     }
     check_balls(candidates);
     if (candidates.empty() || points.empty()) {
@@ -785,10 +775,8 @@ std::vector<FewBalls> shared_balls(std::span<const Sharer> solids, Index total, 
     // More exchanges than this hardly ever help, and each is two searches.
     constexpr int kExchanges = 4;
     const auto size = static_cast<Index>(solids.size());
-    if (total < size) {
-        throw InvalidOption("the " + counted(size, "solid") + " need a ball each, and " + std::to_string(total) +
-                            " are too few");
-    }
+    require(total >= size,
+            "the " + counted(size, "solid") + " need a ball each, and " + std::to_string(total) + " are too few");
     FewBallsOptions own = options;
     own.error = {};
     const auto options_of = [&](const Sharer& sharer, Index count) {
@@ -870,9 +858,8 @@ std::vector<FewBalls> shared_balls(std::span<const Sharer> solids, Index total, 
 
 std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count) {
     check_balls(balls);
-    if (balls.empty() || count < 1) {
-        throw InvalidOption("large balls are put around one ball at least, and one of them is needed at least");
-    }
+    require(!balls.empty() && count >= 1,
+            "large balls are put around one ball at least, and one of them is needed at least");
     struct Group {
         Ball around;
         std::vector<Ball> balls;

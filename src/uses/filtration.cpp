@@ -18,6 +18,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
@@ -216,7 +217,7 @@ CellScales cell_scales(const Filtration& filtration) {
     return result;
 }
 
-void require(bool condition, const std::string& message) {
+void require_order(bool condition, const std::string& message) {
     if (!condition) {
         throw UnusableInput(Diagnostic{"filtration.order", message});
     }
@@ -242,25 +243,27 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
 void check(const Filtration& filtration) {
     const MedialComplex& complex = filtration.complex;
     check(complex);
-    require(filtration.vertex_scales.size() == complex.vertices.size() &&
-                filtration.edge_scales.size() == complex.edges.size() &&
-                filtration.face_scales.size() == complex.faces.size(),
-            "the scales of a filtration must be as many as its vertices, edges and faces");
+    require_order(filtration.vertex_scales.size() == complex.vertices.size() &&
+                      filtration.edge_scales.size() == complex.edges.size() &&
+                      filtration.face_scales.size() == complex.faces.size(),
+                  "the scales of a filtration must be as many as its vertices, edges and faces");
     const auto is_scale = [](double scale) { return scale >= 1.0; };
-    require(std::ranges::all_of(filtration.vertex_scales, is_scale) &&
-                std::ranges::all_of(filtration.edge_scales, is_scale) &&
-                std::ranges::all_of(filtration.face_scales, is_scale),
-            "the scales of a filtration must be at least 1");
+    require_order(std::ranges::all_of(filtration.vertex_scales, is_scale) &&
+                      std::ranges::all_of(filtration.edge_scales, is_scale) &&
+                      std::ranges::all_of(filtration.face_scales, is_scale),
+                  "the scales of a filtration must be at least 1");
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         for (const Index v : complex.edges[e]) {
-            require(filtration.edge_scales[e] <= filtration.vertex_scales[v],
-                    "edge " + std::to_string(e) + " of the filtration vanishes after its vertex " + std::to_string(v));
+            require_order(
+                filtration.edge_scales[e] <= filtration.vertex_scales[v],
+                "edge " + std::to_string(e) + " of the filtration vanishes after its vertex " + std::to_string(v));
         }
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         for (const Index e : complex.face_edges[f]) {
-            require(filtration.face_scales[f] <= filtration.edge_scales[e],
-                    "face " + std::to_string(f) + " of the filtration vanishes after its edge " + std::to_string(e));
+            require_order(
+                filtration.face_scales[f] <= filtration.edge_scales[e],
+                "face " + std::to_string(f) + " of the filtration vanishes after its edge " + std::to_string(e));
         }
     }
 }
@@ -284,9 +287,7 @@ std::optional<Diagnostic> unknown_level(const Filtration& filtration, double sca
 std::vector<FiltrationLevel> profile(const Filtration& filtration, double largest_scale, Index count,
                                      const Execution& execution) {
     check_scale(largest_scale);
-    if (count < 2) {
-        throw InvalidOption("a profile needs at least two levels");
-    }
+    require(count >= 2, "a profile needs at least two levels");
     return in_arena(execution, [&] {
         report(execution, "profile", 0.0);
         check(filtration);

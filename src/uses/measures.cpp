@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/progress.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -210,9 +210,7 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
 std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton, const TriangleMesh& surface,
                                std::span<const double> thickness, const TriangleMesh& closer,
                                const MeasureOptions& options, const Execution& execution) {
-    if (thickness.size() != surface.vertices.size()) {
-        throw InvalidOption("one thickness is needed for each vertex of the surface");
-    }
+    require(thickness.size() == surface.vertices.size(), "one thickness is needed for each vertex of the surface");
     const Pieces pieces = pieces_of(skeleton, options.pieces);
     std::vector<Measures> rows =
         measured(axis, skeleton, pieces,

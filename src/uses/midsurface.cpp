@@ -22,11 +22,11 @@
 #include "axis/envelope_data.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/envelope.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/shrinking.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "uses/ascent.hpp"
@@ -574,9 +574,8 @@ Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& 
 }
 
 void check_options(const MedialComplex& complex, const MidsurfaceOptions& options) {
-    if (!(options.angle > 0.0 && options.angle <= 90.0)) {
-        throw InvalidOption("the least object angle of a midsurface must be more than 0 and at most 90 degrees");
-    }
+    require(options.angle > 0.0 && options.angle <= 90.0,
+            "the least object angle of a midsurface must be more than 0 and at most 90 degrees");
     check(complex);
     check_angles(complex);
 }

@@ -23,11 +23,11 @@
 #include "balls/union/union_data.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
-#include "scaleaxis/errors.hpp"
 #include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -811,12 +811,10 @@ void set_mean_radii(const Solid& solid, Skeleton& skeleton) {
 }
 
 void validate(const SkeletonOptions& options) {
-    if (!(options.spacing >= 0.0) || !std::isfinite(options.spacing)) {
-        throw InvalidOption("the spacing of the nodes must be a number of at least 0");
-    }
-    if (!(options.significance >= 0.0) || !std::isfinite(options.significance)) {
-        throw InvalidOption("the significance of branches must be a number of at least 0");
-    }
+    require(options.spacing >= 0.0 && std::isfinite(options.spacing),
+            "the spacing of the nodes must be a number of at least 0");
+    require(options.significance >= 0.0 && std::isfinite(options.significance),
+            "the significance of branches must be a number of at least 0");
 }
 
 double spacing_of(const SkeletonOptions& options, const MedialComplex& complex) {
@@ -930,9 +928,8 @@ SkeletonStatistics statistics_of(const Skeleton& skeleton, const MedialComplex& 
 Skeleton skeleton(const MedialComplex& complex, const BallUnion& ball_union, const SkeletonOptions& options,
                   const Execution& execution) {
     validate(options);
-    if (options.radius == SkeletonRadius::kMean) {
-        throw InvalidOption("mean radii need the solid: of an axis alone a skeleton has the inscribed ones");
-    }
+    require(options.radius != SkeletonRadius::kMean,
+            "mean radii need the solid: of an axis alone a skeleton has the inscribed ones");
     return in_arena(execution, [&] {
         const UnionInterior& interior = ball_union.data().interior();
         const auto radius_at = [&](const Point& p) -> std::optional<double> {
@@ -972,9 +969,8 @@ Skeleton skeleton(const MedialComplex& complex, const SkeletonOptions& options, 
 
 std::vector<Index> nearest_nodes(const Skeleton& skeleton, const MedialComplex& complex, std::span<const Point> points,
                                  const Execution& execution) {
-    if (skeleton.vertex_nodes.size() != complex.vertices.size()) {
-        throw InvalidOption("the skeleton is not that of this complex: their numbers of vertices differ");
-    }
+    require(skeleton.vertex_nodes.size() == complex.vertices.size(),
+            "the skeleton is not that of this complex: their numbers of vertices differ");
     std::vector<Ball> balls;
     std::vector<Index> nodes;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {

@@ -11,6 +11,7 @@
 
 #include "axis/edit/split_triangle.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
@@ -111,9 +112,7 @@ SurfaceValues surface_values(const TriangleMesh& mesh, std::span<const double> v
 }
 
 AreaHistogram area_histogram(const TriangleMesh& mesh, std::span<const double> values, Index bins) {
-    if (bins < 1) {
-        throw InvalidOption("a histogram has at least one bin");
-    }
+    require(bins >= 1, "a histogram has at least one bin");
     check_values(mesh, values);
     AreaHistogram histogram{0.0, std::vector<double>(static_cast<std::size_t>(bins), 0.0)};
     const double largest = values.empty() ? 0.0 : *std::ranges::max_element(values);
@@ -222,9 +221,7 @@ std::optional<Diagnostic> unresolved_thickness(const TriangleMesh& surface, std:
 }
 
 TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
-    if (!(length > 0.0)) {
-        throw InvalidOption("the length of edges must be positive");
-    }
+    require(length > 0.0, "the length of edges must be positive");
     check_values(mesh, std::vector<double>(mesh.vertices.size()));
     while (true) {
         const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
@@ -238,9 +235,8 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
             middles.push_back(midpoint(mesh.vertices[a], mesh.vertices[b]));
         }
         divide(mesh, edges, middles);
-        if (mesh.triangles.size() > kMostTriangles) {
-            throw InvalidOption("edges so short take more than 1e8 triangles: choose a larger length");
-        }
+        require(mesh.triangles.size() <= kMostTriangles,
+                "edges so short take more than 1e8 triangles: choose a larger length");
     }
 }
 

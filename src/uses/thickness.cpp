@@ -18,6 +18,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "base/angles.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
@@ -198,9 +199,8 @@ Slabs sorted_slabs(const MedialComplex& complex, double angle) {
 }
 
 void check_options(const ThicknessOptions& options) {
-    if (!(options.angle >= 0.0 && options.angle < 180.0)) {
-        throw InvalidOption("the angle between contacts must lie between 0 and 180 degrees, and be less than 180");
-    }
+    require(options.angle >= 0.0 && options.angle < 180.0,
+            "the angle between contacts must lie between 0 and 180 degrees, and be less than 180");
 }
 
 // Of the balls that touch the surface at a point the largest. \param limit of growth, more than the least one
@@ -547,9 +547,7 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
 }
 
 Image cubic_grid(const Box& box, Index resolution) {
-    if (!kResolutionRange.contains(resolution)) {
-        throw InvalidOption("the resolution of an image must lie between 8 and 4096");
-    }
+    require(kResolutionRange.contains(resolution), "the resolution of an image must lie between 8 and 4096");
     const Point extent = box.max - box.min;
     const double longest = std::max({extent.x, extent.y, extent.z});
     if (box.is_empty() || !(longest > 0.0) || !std::isfinite(longest)) {

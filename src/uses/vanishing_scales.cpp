@@ -17,10 +17,10 @@
 #include <string_view>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/balls.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/filtration.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "spatial/ball_tree.hpp"
@@ -521,12 +521,9 @@ class Vanishing {
 };
 
 void check_options(const FiltrationOptions& options) {
-    if (!kLargestScaleRange.contains(options.largest_scale)) {
-        throw InvalidOption("the largest scale must lie between 1 and 1000");
-    }
-    if (!(options.tolerance >= 1e-9 && options.tolerance <= 0.1)) {
-        throw InvalidOption("the tolerance of the scales must lie between 1e-9 and 0.1");
-    }
+    require(kLargestScaleRange.contains(options.largest_scale), "the largest scale must lie between 1 and 1000");
+    require(options.tolerance >= 1e-9 && options.tolerance <= 0.1,
+            "the tolerance of the scales must lie between 1e-9 and 0.1");
 }
 
 // Balls as others have to be, but radii may be 0.

@@ -15,10 +15,10 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/triangulated.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/cleaning.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -465,9 +465,7 @@ MedialComplex without_short_edges_at_seams(MedialComplex complex, double part) {
 }
 
 MedialComplex contract_slivers(const MedialComplex& complex, double tolerance, const Execution& execution) {
-    if (!(tolerance > 0.0)) {
-        throw InvalidOption("the tolerance must be a positive number");
-    }
+    require(tolerance > 0.0, "the tolerance must be a positive number");
     return in_arena(execution, [&] {
         check(complex);
         return without_slivers(complex, tolerance);

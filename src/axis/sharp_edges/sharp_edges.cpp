@@ -17,9 +17,9 @@
 #include "axis/sharp_edges/strips.hpp"
 #include "axis/sharp_edges/traced_edges.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/fit.hpp"
 #include "scaleaxis/ranges.hpp"
 
@@ -87,12 +87,8 @@ std::vector<EdgeLine> clear_lines(std::vector<EdgeLine> lines, double tolerance)
 }
 
 void validate(const SharpEdgeOptions& options) {
-    if (!kSharpAngleRange.contains(options.angle)) {
-        throw InvalidOption("the angle of sharp edges must lie between 10 and 150 degrees");
-    }
-    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
-        throw InvalidOption("the tolerance must be a positive number");
-    }
+    require(kSharpAngleRange.contains(options.angle), "the angle of sharp edges must lie between 10 and 150 degrees");
+    require(options.tolerance > 0.0 && std::isfinite(options.tolerance), "the tolerance must be a positive number");
     check_scale(options.scale);
 }
 

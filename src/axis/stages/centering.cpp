@@ -20,11 +20,11 @@
 #include "axis/stages/stages.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "sampling/questions.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/slab.hpp"
 #include "spatial/spatial_order.hpp"
@@ -678,9 +678,8 @@ CenteredComplex with_touching_balls(MedialComplex complex, const Touching& touch
 
 Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid, const CenterOptions& options,
                                Feet feet, const Execution& execution) {
-    if (!(options.tolerance > 0.0) || !std::isfinite(options.tolerance)) {
-        throw InvalidOption("the tolerance of centering must be a positive number");
-    }
+    require(options.tolerance > 0.0 && std::isfinite(options.tolerance),
+            "the tolerance of centering must be a positive number");
     check_knows_nearest(solid);
     std::vector<Index> vertices;
     for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {

@@ -20,10 +20,10 @@
 #include "axis/stages/resolved_fire.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
-#include "scaleaxis/errors.hpp"
 #include "spatial/ball_tree.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -608,9 +608,8 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
 }  // namespace
 
 CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution) {
-    if (!(options.thickness >= 0.0) || !std::isfinite(options.thickness)) {
-        throw InvalidOption("the thickness to clean by must be a number of at least 0");
-    }
+    require(options.thickness >= 0.0 && std::isfinite(options.thickness),
+            "the thickness to clean by must be a number of at least 0");
     return in_arena(execution, [&] {
         report(execution, kCleaningStage, 0.0);
         CleanedComplex result =

@@ -16,9 +16,9 @@
 #include "axis/stages/stages.hpp"
 #include "base/compiler.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/run_together.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -324,9 +324,7 @@ FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, con
 }
 
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution) {
-    if (!kAngleRange.contains(options.angle)) {
-        throw InvalidOption("the filter angle must lie between 0 and 90 degrees");
-    }
+    require(kAngleRange.contains(options.angle), "the filter angle must lie between 0 and 90 degrees");
     return in_arena(execution, [&] {
         report(execution, "filter", 0.0);
         if (options.angle > 0.0) {

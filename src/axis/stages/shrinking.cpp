@@ -19,6 +19,7 @@
 #include "axis/edit/split_triangle.hpp"
 #include "axis/stages/stages.hpp"
 #include "base/angles.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
@@ -231,12 +232,10 @@ class Refinement {
 };
 
 void validate(const DensifyOptions& options) {
-    if (!kMeetingAngleRange.contains(options.meeting_angle)) {
-        throw InvalidOption("the meeting angle must lie between 90 and 175 degrees");
-    }
-    if (options.most_vertices && !kMostVerticesRange.contains(*options.most_vertices)) {
-        throw InvalidOption("the limit of vertices must lie between 1 and " + std::to_string(kMostVertices));
-    }
+    require(kMeetingAngleRange.contains(options.meeting_angle),
+            "the meeting angle must lie between 90 and 175 degrees");
+    require(!options.most_vertices || kMostVerticesRange.contains(*options.most_vertices),
+            "the limit of vertices must lie between 1 and " + std::to_string(kMostVertices));
 }
 
 void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,

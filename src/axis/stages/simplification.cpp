@@ -20,6 +20,7 @@
 #include "axis/stages/stages.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
@@ -645,18 +646,12 @@ class Collapser {
 };
 
 void validate(const MedialComplex& complex, const SimplifyOptions& options) {
-    if (!options.error && !options.vertices) {
-        throw InvalidOption("simplification needs an error, or a number of vertices");
-    }
-    if (options.error && (!(*options.error > 0.0) || !std::isfinite(*options.error))) {
-        throw InvalidOption("the error of simplification must be a positive length");
-    }
-    if (options.error && !complex.vertices.empty() && *options.error > box_of_balls(complex).diagonal()) {
-        throw InvalidOption("the error of simplification must be at most the diagonal of the box around the balls");
-    }
-    if (options.vertices && *options.vertices < 1) {
-        throw InvalidOption("the number of vertices must be at least 1");
-    }
+    require(options.error || options.vertices, "simplification needs an error, or a number of vertices");
+    require(!options.error || (*options.error > 0.0 && std::isfinite(*options.error)),
+            "the error of simplification must be a positive length");
+    require(!options.error || complex.vertices.empty() || *options.error <= box_of_balls(complex).diagonal(),
+            "the error of simplification must be at most the diagonal of the box around the balls");
+    require(!options.vertices || *options.vertices >= 1, "the number of vertices must be at least 1");
     for (const Index v : options.anchors) {
         if (v < 0 || static_cast<std::size_t>(v) >= complex.vertices.size()) {
             throw InvalidOption("anchor " + std::to_string(v) + " is no vertex: there are " +

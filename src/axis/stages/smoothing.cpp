@@ -10,8 +10,8 @@
 #include "axis/complex.hpp"
 #include "axis/stages/stages.hpp"
 #include "balls/union/union_data.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -78,9 +78,7 @@ std::vector<Movable> movable_vertices(const MedialComplex& complex) {
 }
 
 void validate(const SmoothOptions& options) {
-    if (options.rounds < 0) {
-        throw InvalidOption("the number of smoothing rounds must be at least 0");
-    }
+    require(options.rounds >= 0, "the number of smoothing rounds must be at least 0");
 }
 
 }  // namespace

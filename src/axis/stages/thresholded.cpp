@@ -6,6 +6,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
@@ -72,9 +73,8 @@ KeptElements at_least(const MedialComplex& complex, LocalMeasure measure, double
 
 FilteredComplex thresholded(const MedialComplex& complex, LocalMeasure measure, double threshold,
                             const Execution& execution) {
-    if (!(threshold >= 0.0) || !std::isfinite(threshold)) {
-        throw InvalidOption("the threshold of a local method must be a number of at least 0");
-    }
+    require(threshold >= 0.0 && std::isfinite(threshold),
+            "the threshold of a local method must be a number of at least 0");
     return in_arena(execution, [&] {
         report(execution, "filter", 0.0);
         check(complex);

@@ -14,6 +14,7 @@
 #include <utility>
 
 #include "base/angles.hpp"
+#include "base/faults.hpp"
 #include "base/formats/xml.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -284,9 +285,8 @@ std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file,
     }
     for (const auto& [name, position] : rest) {
         const auto found = by_name.find(name);
-        if (found == by_name.end() || !mounts[found->second].joint.is_driven) {
-            throw InvalidOption(file + " has no joint " + name + " that can be moved");
-        }
+        require(found != by_name.end() && mounts[found->second].joint.is_driven,
+                file + " has no joint " + name + " that can be moved");
         mounts[found->second].joint.rest = position;
     }
     std::size_t i = 0;

@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/formats/json.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/robot.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -163,9 +163,7 @@ std::vector<TextFile> robot_files(const Robot& robot, std::span<const LinkBalls>
     if (format == "urdf") {
         return {{name + ".urdf", robot.with_balls(links)}};
     }
-    if (format != "vamp") {
-        throw InvalidOption("\"" + format + "\" is no format of a robot: curobo, vamp, ballpark, srdf and urdf are");
-    }
+    require(format == "vamp", "\"" + format + "\" is no format of a robot: curobo, vamp, ballpark, srdf and urdf are");
     std::vector<LinkBalls> upper;
     for (const auto& [link, balls] : links) {
         upper.push_back({link, balls.empty() ? balls : enclosing_balls(balls, large)});

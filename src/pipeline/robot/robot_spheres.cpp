@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -57,16 +58,13 @@ SampledLink sampled_link(const Robot& robot, const LinkShape& shape, const Robot
 }
 
 void check_robot_options(const Robot& robot, const RobotSpheresOptions& options) {
-    if (options.count && options.total) {
-        throw InvalidOption("either the number of spheres of each link or that of all is needed, not both");
-    }
-    if (options.total && options.error) {
-        throw InvalidOption("with a total the error is as small as it can be: it cannot be chosen too");
-    }
+    require(!options.count || !options.total,
+            "either the number of spheres of each link or that of all is needed, not both");
+    require(!options.total || !options.error,
+            "with a total the error is as small as it can be: it cannot be chosen too");
     for (const auto& [name, planes] : options.clip) {
-        if (std::ranges::find(robot.links(), name, &LinkShape::link) == robot.links().end()) {
-            throw InvalidOption(robot.file().string() + " has no link " + name + " that collides with anything");
-        }
+        require(std::ranges::find(robot.links(), name, &LinkShape::link) != robot.links().end(),
+                robot.file().string() + " has no link " + name + " that collides with anything");
     }
 }
 

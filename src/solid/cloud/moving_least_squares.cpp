@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "scaleaxis/cloud.hpp"
@@ -533,9 +534,7 @@ std::unique_ptr<Solid> cloud_solid(const PreparedCloud& cloud, const MlsOptions&
         throw UnusableInput(cloud.report.fault);
     }
     const double kernel = options.kernel.value_or(cloud.report.kernel);
-    if (!kKernelRange.contains(kernel)) {
-        throw InvalidOption("the kernel must lie between 1.5 and 100 spacings of the points");
-    }
+    require(kKernelRange.contains(kernel), "the kernel must lie between 1.5 and 100 spacings of the points");
     return in_arena(execution, [&] {
         report(execution, "search tree", 0.0);
         auto solid = std::make_unique<MovingLeastSquares>(cloud, kernel);

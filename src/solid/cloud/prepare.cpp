@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -430,9 +431,8 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
 }  // namespace
 
 PreparedCloud prepare(PointCloud cloud, const PrepareOptions& options, const Execution& execution) {
-    if (!(options.thinning >= 0.0) || !std::isfinite(options.thinning)) {
-        throw InvalidOption("the distance to which points are thinned must be a length of at least 0");
-    }
+    require(options.thinning >= 0.0 && std::isfinite(options.thinning),
+            "the distance to which points are thinned must be a length of at least 0");
     return in_arena(execution, [&] {
         PreparedCloud result;
         CloudReport& report = result.report;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "base/built_once.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
@@ -262,17 +263,13 @@ class FunctionSolid final : public Solid, public NearestPoints {
     /// \throws InvalidOption
     void make_lattice() {
         const Point extent = bounds_.max - bounds_.min;
-        if (!is_finite(bounds_.min) || !is_finite(bounds_.max) || !(std::min({extent.x, extent.y, extent.z}) > 0.0)) {
-            throw InvalidOption(
-                "the bounds of an implicit function must be finite, and larger than nothing along x, y "
-                "and z");
-        }
+        require(is_finite(bounds_.min) && is_finite(bounds_.max) && std::min({extent.x, extent.y, extent.z}) > 0.0,
+                "the bounds of an implicit function must be finite, and larger than nothing along x, y and z");
         if (Diagnostic fault = extent_fault(bounds_, "bounds"); !fault.empty()) {
             throw InvalidOption(std::move(fault));
         }
-        if (!(step_ >= 0.0) || !std::isfinite(step_)) {
-            throw InvalidOption("the smallest feature of an implicit function must be a positive length");
-        }
+        require(step_ >= 0.0 && std::isfinite(step_),
+                "the smallest feature of an implicit function must be a positive length");
         rounding_ = std::numeric_limits<double>::epsilon() * std::max(norm(bounds_.min), norm(bounds_.max));
         step_ = step_ > 0.0 ? step_ : kDefaultFeature * bounds_.diagonal();
         double points = 1.0;
@@ -282,11 +279,9 @@ class FunctionSolid final : public Solid, public NearestPoints {
             return count;
         };
         const std::array<double, 3> counts{cells(extent.x), cells(extent.y), cells(extent.z)};
-        if (!(points < kMostPoints) || !(*std::ranges::max_element(counts) < (1 << 20))) {
-            throw InvalidOption(
-                "the smallest feature is too small for these bounds: the function would be evaluated at "
-                "more than 2^34 places to find all parts; choose a larger one");
-        }
+        require(points < kMostPoints && *std::ranges::max_element(counts) < (1 << 20),
+                "the smallest feature is too small for these bounds: the function would be evaluated at more than "
+                "2^34 places to find all parts; choose a larger one");
         counts_ = {static_cast<Index>(counts[0]), static_cast<Index>(counts[1]), static_cast<Index>(counts[2])};
         lattice_ = {
             bounds_.min,

@@ -16,6 +16,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
@@ -257,9 +258,8 @@ void check_layout(const ImageView& image) {
 }
 
 void check_width(double smoothing_width) {
-    if (!kMaskSmoothingRange.contains(smoothing_width)) {
-        throw InvalidOption("the width of the smoothing of masks must lie between 0 and 10 voxels");
-    }
+    require(kMaskSmoothingRange.contains(smoothing_width),
+            "the width of the smoothing of masks must lie between 0 and 10 voxels");
 }
 
 /// A smoothed mask in place of a mask.

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/built_once.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/errors.hpp"
@@ -462,9 +463,7 @@ std::vector<Diagnostic> warnings_of(const ImageView& image, const Level& level) 
 }
 
 void check_level(const Level& level) {
-    if (!std::isfinite(level.iso)) {
-        throw InvalidOption("the level of an image must be a finite number");
-    }
+    require(std::isfinite(level.iso), "the level of an image must be a finite number");
 }
 
 /// See `image_solid`. \param free_image is called as soon as `image` is not needed any more

@@ -7,9 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solid/mesh/fast_winding.hpp"
@@ -47,14 +47,10 @@ Box widened(const Box& box, double by) { return {box.min - Point{by, by, by}, bo
 /// The largest cells that show a solid of this thickness.
 /// \throws InvalidOption if they are too small, or the box is not finite
 double feature_of(double thickness, const Box& box, const std::string& name) {
-    if (!std::isfinite(box.diagonal())) {
-        throw InvalidOption("the " + name + " is too large to compute with");
-    }
+    require(std::isfinite(box.diagonal()), "the " + name + " is too large to compute with");
     const double feature = std::min(0.5 * thickness, kCoarsest * box.diagonal());
-    if (feature < kFinest * box.diagonal()) {
-        throw InvalidOption("the " + name + " is too small for these triangles: take " +
-                            to_text(2.0 * kFinest * box.diagonal() * 1.01) + " or more");
-    }
+    require(feature >= kFinest * box.diagonal(), "the " + name + " is too small for these triangles: take " +
+                                                     to_text(2.0 * kFinest * box.diagonal() * 1.01) + " or more");
     return feature;
 }
 

@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/text.hpp"
 #include "uses/curves/ways_out.hpp"
@@ -384,9 +385,7 @@ Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& 
 }
 
 Skeleton resampled(const Skeleton& skeleton, double step) {
-    if (!(step > 0.0) || !std::isfinite(step)) {
-        throw InvalidOption("the step of nodes along branches must be a number above 0");
-    }
+    require(step > 0.0 && std::isfinite(step), "the step of nodes along branches must be a number above 0");
     std::vector<char> stays(skeleton.nodes.size(), 1);
     for (std::size_t b = 0; b < skeleton.branches.size(); ++b) {
         const std::span<const Index> nodes = skeleton.branches[b];

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "scaleaxis/errors.hpp"
+#include "base/faults.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -63,9 +63,7 @@ IndexLists with_prolongations(const IndexLists& branches, const std::vector<Prol
 }  // namespace
 
 Skeleton led_to_openings(Skeleton skeleton, std::span<const Hole> holes, double spacing) {
-    if (!(spacing >= 0.0)) {
-        throw InvalidOption("the spacing of nodes must not be negative");
-    }
+    require(spacing >= 0.0, "the spacing of nodes must not be negative");
     const std::vector<Index> degree = branch_degrees(skeleton);
     std::vector<Index> ends;
     for (Index n = 0; n < static_cast<Index>(degree.size()); ++n) {

@@ -17,10 +17,10 @@
 #include "axis/envelope_data.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
-#include "scaleaxis/errors.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
@@ -680,9 +680,8 @@ ShellMesh shells_in(const Midsurface& surface, const ShellOptions& options, cons
 }
 
 void check_shell_options(const ShellOptions& options) {
-    if (!(options.size > 0.0 && std::isfinite(options.size))) {
-        throw InvalidOption("the size of the elements of a shell mesh must be more than 0");
-    }
+    require(options.size > 0.0 && std::isfinite(options.size),
+            "the size of the elements of a shell mesh must be more than 0");
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/exact_axis.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -388,15 +389,9 @@ void check_block(const VolumeBlock& block, std::span<const float> values, const 
         }
         count *= static_cast<std::size_t>(block.sizes[axis]);
     }
-    if (values.size() != count) {
-        throw InvalidOption("a block needs as many values as its sizes say");
-    }
-    if (!(options.move >= 0.0 && options.move <= kMostMove)) {
-        throw InvalidOption("balls are moved by 0 to 0.01 radii");
-    }
-    if (!(options.largest_depth >= 0.0)) {
-        throw InvalidOption("the largest depth must be a number of at least 0");
-    }
+    require(values.size() == count, "a block needs as many values as its sizes say");
+    require(options.move >= 0.0 && options.move <= kMostMove, "balls are moved by 0 to 0.01 radii");
+    require(options.largest_depth >= 0.0, "the largest depth must be a number of at least 0");
 }
 
 }  // namespace

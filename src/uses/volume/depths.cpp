@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/volume.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -159,9 +159,7 @@ void transform_row(const std::uint8_t* mask, std::int32_t* at, Index size) {
 
 std::vector<std::int32_t> squared_depths(const std::array<Index, 3>& sizes, std::span<const std::uint8_t> mask,
                                          const Execution& execution) {
-    if (mask.size() != number_of_voxels(sizes)) {
-        throw InvalidOption("a mask needs as many values as its sizes say");
-    }
+    require(mask.size() == number_of_voxels(sizes), "a mask needs as many values as its sizes say");
     return in_arena(execution, [&] {
         std::vector<std::int32_t> depths(mask.size());
         const std::ptrdiff_t width = sizes[0];

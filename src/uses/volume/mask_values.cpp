@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/volume.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -40,12 +40,9 @@ void smooth_lines(std::vector<std::int32_t>& sums, const std::array<Index, 3>& s
 std::vector<float> mask_values(const std::array<Index, 3>& sizes, std::span<const std::uint8_t> mask, int passes,
                                const Execution& execution) {
     const auto& [width, height, depth] = sizes;
-    if (mask.size() != static_cast<std::size_t>(width) * height * depth || mask.empty()) {
-        throw InvalidOption("a mask needs as many values as its sizes say, and at least one");
-    }
-    if (passes < 0 || passes > kMostPasses) {
-        throw InvalidOption("a mask is smoothed 0 to 4 times");
-    }
+    require(mask.size() == static_cast<std::size_t>(width) * height * depth && !mask.empty(),
+            "a mask needs as many values as its sizes say, and at least one");
+    require(passes >= 0 && passes <= kMostPasses, "a mask is smoothed 0 to 4 times");
     return in_arena(execution, [&, width = width, height = height, depth = depth] {
         std::vector<std::int32_t> sums(mask.size());
         for_each_index(mask.size(), [&](std::size_t i) { sums[i] = mask[i] != 0 ? 1 : 0; });

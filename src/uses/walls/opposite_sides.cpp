@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "base/angles.hpp"
-#include "scaleaxis/errors.hpp"
+#include "base/faults.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "uses/uphill.hpp"
 
@@ -154,9 +154,8 @@ Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) 
 }  // namespace
 
 void check_wall_angle(double angle) {
-    if (!kWallAngleRange.contains(angle)) {
-        throw InvalidOption("the angle between the contacts of a wall must lie between 60 and 179 degrees");
-    }
+    require(kWallAngleRange.contains(angle),
+            "the angle between the contacts of a wall must lie between 60 and 179 degrees");
 }
 
 void add_normals(const TriangleMesh& mesh, std::vector<Point>& normals) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/angles.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
@@ -99,18 +100,13 @@ void check_options(const SizeOptions& options) {
     const auto is_length = [](const std::optional<double>& length) {
         return !length || (*length > 0.0 && std::isfinite(*length));
     };
-    if (!is_length(options.min_size) || !is_length(options.max_size)) {
-        throw InvalidOption("the least and the largest size must be positive lengths");
-    }
-    if (options.min_size && options.max_size && *options.min_size > *options.max_size) {
-        throw InvalidOption("the least size must not be more than the largest one");
-    }
-    if (!kElementsAcrossRange.contains(options.elements_across)) {
-        throw InvalidOption("the number of elements across a wall must lie between 0.1 and 100");
-    }
-    if (!kGradationRange.contains(options.gradation)) {
-        throw InvalidOption("the gradation of sizes must lie between 0.01 and 10");
-    }
+    require(is_length(options.min_size) && is_length(options.max_size),
+            "the least and the largest size must be positive lengths");
+    require(!options.min_size || !options.max_size || *options.min_size <= *options.max_size,
+            "the least size must not be more than the largest one");
+    require(kElementsAcrossRange.contains(options.elements_across),
+            "the number of elements across a wall must lie between 0.1 and 100");
+    require(kGradationRange.contains(options.gradation), "the gradation of sizes must lie between 0.01 and 10");
     check_wall_angle(options.angle);
 }
 

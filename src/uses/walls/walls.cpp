@@ -13,11 +13,11 @@
 
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
+#include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "sampling/questions.hpp"
-#include "scaleaxis/errors.hpp"
 #include "scaleaxis/nearest.hpp"
 #include "scaleaxis/thickness.hpp"
 #include "spatial/point_tree.hpp"
@@ -536,18 +536,8 @@ class WallSearch {
 
 void check_options(const WallOptions& options) {
     for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
-        if (limit && !(*limit > 0.0 && std::isfinite(*limit))) {
-            throw InvalidOption("a limit of walls and gaps must be a positive length");
-        }
-    }
-    if (!options.min_wall && !options.max_wall && !options.min_gap) {
-        throw InvalidOption("walls and gaps need a limit: of thin walls, thick walls, or gaps");
-    }
-    if (options.min_wall && options.max_wall && !(*options.min_wall < *options.max_wall)) {
-        throw InvalidOption("the limit of thin walls must be less than that of thick ones");
-    }
-    if (!(options.edge > 0.0 && options.edge <= 1.0)) {
-        throw InvalidOption("the longest edge must be more than 0, and at most the diagonal: 1");
+        require(!limit || (*limit > 0.0 && std::isfinite(*limit)),
+                "a limit of walls and gaps must be a positive length");
     }
     check_wall_angle(options.angle);
 }
