@@ -302,6 +302,12 @@ TEST(Walls, AtPoints) {
     }
 }
 
+TEST(FlatFaces, RefuseTrianglesWithoutTheirVertices) {
+    const std::vector<Point> vertices{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}};
+    EXPECT_THROW(with_delaunay_faces({vertices, {{0, 1, 3}}}), UnusableInput);
+    EXPECT_THROW(with_delaunay_faces({vertices, {{0, -1, 2}}}), UnusableInput);
+}
+
 TEST(FlatFaces, TurnFansOfNeedlesIntoDelaunayTriangles) {
     // A disc whose faces are fans around one corner of the rim.
     constexpr int kCorners = 64;

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <utility>
 
 #include "base/angles.hpp"
@@ -11,7 +12,8 @@
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
+#include "base/vectors.hpp"
+#include "spatial/mesh_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -45,9 +47,7 @@ Kept kept(const std::vector<std::uint8_t>& keeps) {
 
 template <class T>
 std::vector<T> gathered(const std::vector<T>& all, const Kept& kept) {
-    std::vector<T> result(kept.elements.size());
-    for_each_index(result.size(), [&](std::size_t i) { result[i] = all[kept.elements[i]]; });
-    return result;
+    return mapped<T>(kept.elements.size(), [&](std::size_t i) { return all[kept.elements[i]]; });
 }
 
 IndexLists gathered(const IndexLists& all, const Kept& lists, const Kept& items) {
@@ -200,10 +200,7 @@ Point area_vector(const MedialComplex& complex, Index face) {
 }
 
 double segment_distance(const Point& p, const Point& a, const Point& b) {
-    const Point direction = b - a;
-    const double length = squared_norm(direction);
-    const double t = length > 0.0 ? std::clamp(dot(p - a, direction) / length, 0.0, 1.0) : 0.0;
-    return distance(p, a + t * direction);
+    return distance(p, nearest_on_segment(a, b, p));
 }
 
 Point center_of_face(const MedialComplex& complex, Index face) {
@@ -303,13 +300,7 @@ std::vector<Index> isolated_vertices(const MedialComplex& complex) {
         has_edge[a] = 1;
         has_edge[b] = 1;
     }
-    std::vector<Index> isolated;
-    for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-        if (has_edge[v] == 0) {
-            isolated.push_back(static_cast<Index>(v));
-        }
-    }
-    return isolated;
+    return indices_where(complex.vertices.size(), [&](Index v) { return has_edge[v] == 0; });
 }
 
 MedialComplex subcomplex(const MedialComplex& complex, const std::vector<std::uint8_t>& keeps_vertex,
@@ -376,13 +367,7 @@ void label_sheets(MedialComplex& complex) {
             sheets.join(first, second);
         }
     }
-    complex.sheets = 0;
-    complex.face_sheets.resize(faces);
-    for (Index f = 0; f < faces; ++f) {
-        // A set's representative is its smallest face, so it has its number before the others ask for it.
-        const Index representative = sheets.find(f);
-        complex.face_sheets[f] = representative == f ? complex.sheets++ : complex.face_sheets[representative];
-    }
+    std::tie(complex.face_sheets, complex.sheets) = sheets.numbered();
 }
 
 void append_labelled(MedialComplex& all, const MedialComplex& axis, Index label) {

@@ -19,6 +19,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "spatial/extent.hpp"
@@ -49,20 +50,11 @@ Slab slab_at(const MedialComplex& complex, const std::array<Index, Size>& vertic
 // How many parts no longer than `length` a length is cut into.
 int parts_of(double whole, double length) { return std::max(1, static_cast<int>(std::ceil(whole / length))); }
 
-// Any two unit vectors that are orthogonal to a third one and to each other.
-std::array<Point, 2> across(const Point& direction) {
-    const Point other = std::abs(direction.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
-    const Point first = unit(cross(direction, other));
-    return {first, cross(direction, first)};
-}
-
 }  // namespace
 
 std::vector<Slab> slabs_of(const MedialComplex& complex) {
-    std::vector<Slab> slabs;
-    for (const FaceTriangle& triangle : face_triangles(complex)) {
-        slabs.push_back(slab_at(complex, triangle.corners));
-    }
+    auto slabs = each_of<Slab>(face_triangles(complex),
+                               [&](const FaceTriangle& triangle) { return slab_at(complex, triangle.corners); });
     for (const auto& edge : curve_edges(complex)) {
         slabs.push_back(slab_at(complex, edge));
     }
@@ -230,11 +222,8 @@ double EnvelopeData::depth() const { return kEnvelopeRounding * bounds_.diagonal
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
 double EnvelopeData::typical_radius() const {
-    std::vector<double> radii;
-    for (const Slab& slab : tree_.slabs) {
-        radii.push_back(std::ranges::max(slab.corners, {}, &Ball::radius).radius);
-    }
-    return median(std::move(radii));
+    return median(each_of<double>(
+        tree_.slabs, [&](const Slab& slab) { return std::ranges::max(slab.corners, {}, &Ball::radius).radius; }));
 }
 
 std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
@@ -316,9 +305,8 @@ template <class T, class Answer>
 std::vector<T> answers(std::span<const Point> points, const Execution& execution, const Answer& answer) {
     return in_arena(execution, [&] {
         report(execution, kEnvelopeStage, 0.0);
-        std::vector<T> result(points.size());
-        for_each_index(
-            points.size(), [&](std::size_t i) { result[i] = answer(points[i]); }, std::size_t{256});
+        auto result = mapped<T>(
+            points.size(), [&](std::size_t i) { return answer(points[i]); }, std::size_t{256});
         report(execution, kEnvelopeStage, 1.0);
         return result;
     });

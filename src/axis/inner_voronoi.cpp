@@ -7,7 +7,6 @@
 
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
 #include "delaunay/edges.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/spheres.hpp"
@@ -115,11 +114,10 @@ void find_circumspheres(LabelledCells& cells, double limit) {
             unknown.push_back(c);
         }
     }
-    cells.spheres.resize(unknown.size());
-    for_each_index(unknown.size(), [&](std::size_t i) {
+    cells.spheres = mapped<Circumsphere>(unknown.size(), [&](std::size_t i) {
         const Triangulation& t = cells.triangulation;
         const std::array<Index, 4>& v = t.cells[unknown[i]].vertices;
-        cells.spheres[i] = circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
+        return circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), limit);
     });
 }
 

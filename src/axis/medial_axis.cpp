@@ -15,7 +15,6 @@
 #include "balls/union/union_data.hpp"
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"

@@ -12,7 +12,7 @@
 #include "axis/edit/collapse.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -33,13 +33,7 @@ Remainder without_free_faces(const MedialComplex& complex) {
 }
 
 std::vector<Index> faces_of(const Remainder& left) {
-    std::vector<Index> faces;
-    for (Index f = 0; f < static_cast<Index>(left.has_face.size()); ++f) {
-        if (left.has_face[f] != 0) {
-            faces.push_back(f);
-        }
-    }
-    return faces;
+    return indices_where(left.has_face.size(), [&](Index f) { return left.has_face[f] != 0; });
 }
 
 // The part without a seam inside that each of the remaining faces belongs to, as one of its faces.
@@ -101,8 +95,7 @@ std::vector<Row> seam_equations(const MedialComplex& complex, const Remainder& l
     for (auto& [edge, equation] : equation_of_edge) {
         equations.push_back(std::move(equation));
     }
-    std::ranges::sort(equations);
-    equations.erase(std::unique(equations.begin(), equations.end()), equations.end());
+    sort_unique(equations);
     return equations;
 }
 

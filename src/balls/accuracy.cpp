@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
@@ -25,8 +26,7 @@ std::vector<double> distances_by_contacts(std::span<const Point> points, std::sp
         places.push_back(second);
     }
     const PointTree tree = build_point_tree(places);
-    std::vector<double> distances(points.size());
-    for_each_index(points.size(), [&](std::size_t i) {
+    return mapped<double>(points.size(), [&](std::size_t i) {
         thread_local std::vector<NearPoint> near;
         nearest_points(tree, points[i], kContacts, near);
         double least = std::numeric_limits<double>::infinity();
@@ -34,9 +34,8 @@ std::vector<double> distances_by_contacts(std::span<const Point> points, std::sp
             const Ball& ball = balls[tree.order[contact.position] / 2];
             least = std::min(least, distance(points[i], ball.center) - ball.radius);
         }
-        distances[i] = std::max(0.0, least);
+        return std::max(0.0, least);
     });
-    return distances;
 }
 
 }  // namespace
@@ -52,9 +51,8 @@ UnionAccuracy union_accuracy(std::span<const Ball> balls, std::span<const Contac
         }
         // To be exact it is enough to look at the farthest ones.
         const BallTree tree = build_ball_tree(balls);
-        std::vector<Index> order(distances.size());
-        std::iota(order.begin(), order.end(), 0);
-        std::ranges::stable_sort(order, std::greater<>(), [&](Index i) { return distances[i]; });
+        const auto order = sorted_indices(
+            distances.size(), [&](Index i) { return distances[i]; }, std::greater<>());
         for (const Index i : order) {
             stop_if_cancelled();
             if (distances[i] <= accuracy.largest_distance) {

@@ -31,9 +31,8 @@ auto asked(const Execution& execution, const Work& work) {
 /// `answer(point)` for each point, in parallel.
 template <class Answer>
 auto answers(std::span<const Point> points, const Answer& answer) {
-    std::vector<std::invoke_result_t<Answer, const Point&>> result(points.size());
-    for_each_index(points.size(), [&](std::size_t i) { result[i] = answer(points[i]); });
-    return result;
+    return mapped<std::invoke_result_t<Answer, const Point&>>(points.size(),
+                                                              [&](std::size_t i) { return answer(points[i]); });
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "sampling/inner_cells.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
@@ -79,12 +80,7 @@ std::vector<Index> positions_without_repetitions(std::span<const Ball> balls, co
 }
 
 std::vector<Ball> balls_at(std::span<const Ball> balls, const std::vector<Index>& positions) {
-    std::vector<Ball> result;
-    result.reserve(positions.size());
-    for (const Index i : positions) {
-        result.push_back(balls[i]);
-    }
-    return result;
+    return each_of<Ball>(positions, [&](Index i) { return balls[i]; });
 }
 
 }  // namespace

@@ -7,14 +7,14 @@
 #include <numeric>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "spatial/point_tree.hpp"
 
 namespace scaleaxis::inline v1 {
 
 std::vector<Index> covering_balls(std::span<const Ball> balls, std::span<const Point> points, double reach) {
-    std::vector<Index> by_size(balls.size());
-    std::iota(by_size.begin(), by_size.end(), Index{0});
-    std::ranges::stable_sort(by_size, std::greater<>(), [&](Index i) { return balls[i].radius; });
+    const auto by_size = sorted_indices(
+        balls.size(), [&](Index i) { return balls[i].radius; }, std::greater<>());
     const PointTree tree = build_point_tree(points);
     std::vector<std::uint8_t> is_covered(points.size());
     std::vector<Index> chosen;

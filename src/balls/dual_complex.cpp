@@ -8,7 +8,6 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
 #include "delaunay/edges.hpp"
 #include "spatial/spheres.hpp"
 
@@ -31,10 +30,9 @@ bool has_ghost(const std::array<Index, 4>& cell) { return std::any_of(cell.begin
 
 void find_tetrahedra(DualComplex& complex, Balls balls) {
     const Triangulation& t = complex.triangulation;
-    complex.has_cell.resize(t.size());
-    for_each_index(t.size(), [&](std::size_t c) {
+    complex.has_cell = mapped<std::uint8_t>(t.size(), [&](std::size_t c) {
         const auto& [p, q, r, s] = t.cells[c].vertices;
-        complex.has_cell[c] = !has_ghost(t.cells[c].vertices) && meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
+        return !has_ghost(t.cells[c].vertices) && meet(balls[p], balls[q], balls[r], balls[s]) ? 1 : 0;
     });
 }
 

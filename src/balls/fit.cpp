@@ -11,6 +11,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -202,8 +203,7 @@ void search_all(std::vector<ContactSearch>& searches, std::span<const Ball> ball
 // The points of `∂S` nearest to the centres. They are hardly ever farther than the radius: asking so first is cheaper.
 std::vector<std::optional<Point>> nearest_of(std::span<const Point> centers, std::span<const Ball> balls,
                                              const Solid& solid, std::int64_t& queries) {
-    std::vector<double> bounds(balls.size());
-    std::ranges::transform(balls, bounds.begin(), [](const Ball& ball) { return 1.001 * ball.radius; });
+    auto bounds = each_of<double>(balls, [](const Ball& ball) { return 1.001 * ball.radius; });
     std::vector<std::optional<Point>> nearest(balls.size());
     solid.nearest(centers, bounds, nearest);
     queries += std::ssize(balls);
@@ -227,8 +227,7 @@ std::vector<std::optional<Point>> nearest_of(std::span<const Point> centers, std
 
 void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, const Box& bounds,
                FittedBalls& out) {
-    std::vector<Point> centers(balls.size());
-    std::ranges::transform(balls, centers.begin(), &Ball::center);
+    const auto centers = each_of<Point>(balls, &Ball::center);
     std::vector<std::uint8_t> sides(balls.size());
     solid.inside(centers, sides);
     std::vector<std::optional<Point>> nearest = nearest_of(centers, balls, solid, out.statistics.queries);

@@ -11,6 +11,7 @@
 
 #include "base/angles.hpp"
 #include "base/numbers.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "sampling/restricted_facets.hpp"
 
@@ -44,8 +45,7 @@ std::vector<Point> directions_around() {
 
 std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
     const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-    std::vector<Point> centroids(facets.size());
-    std::ranges::transform(facets, centroids.begin(), [&](const RestrictedFacet& facet) {
+    const auto centroids = each_of<Point>(facets, [&](const RestrictedFacet& facet) {
         const auto [a, b, c] = vertices_of(samples, facet);
         return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
     });
@@ -113,9 +113,8 @@ std::vector<Ball> deep_seeds(std::span<const WayInside> ways, const Solid& solid
     std::vector<std::size_t> left(ways.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     for (const double reach : kReaches) {
-        std::vector<Point> places(left.size());
-        std::ranges::transform(left, places.begin(),
-                               [&](std::size_t i) { return ways[i].place + (reach * limit) * ways[i].inwards; });
+        const auto places =
+            each_of<Point>(left, [&](std::size_t i) { return ways[i].place + (reach * limit) * ways[i].inwards; });
         const std::vector<std::uint8_t> is_inside = sides_of(solid, places);
         // Where nothing is closer than the bound the ball reaches the point but for the limit.
         const std::vector<double> bounds(places.size(), std::max(0.0, reach - 1.0) * limit);

@@ -21,6 +21,7 @@
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/progress.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
 #include "spatial/ball_tree.hpp"
@@ -85,19 +86,12 @@ std::vector<Index> not_covered_deeply(std::span<const Ball> balls) {
     if (balls.empty()) {
         return {};
     }
-    std::vector<Index> by_size(balls.size());
-    std::vector<Point> centers(balls.size());
-    for (std::size_t i = 0; i < balls.size(); ++i) {
-        by_size[i] = static_cast<Index>(i);
-        centers[i] = balls[i].center;
-    }
-    std::stable_sort(by_size.begin(), by_size.end(),
-                     [&](Index i, Index j) { return balls[i].radius > balls[j].radius; });
-    const PointTree tree = build_point_tree(centers);
+    const PointTree tree = build_point_tree(each_of<Point>(balls, &Ball::center));
     std::vector<std::uint8_t> is_done(balls.size());
     std::vector<Index> kept;
     CancellationPoint cancellation_point(64);
-    for (const Index i : by_size) {
+    for (const Index i : sorted_indices(
+             balls.size(), [&](Index k) { return balls[k].radius; }, std::greater<>())) {
         cancellation_point();
         if (is_done[i] != 0) {
             continue;
@@ -283,10 +277,8 @@ class Repair {
     template <class T, class PlaceOf = std::identity>
     std::vector<NearestBall> nearest_balls(const std::vector<T>& points, const PlaceOf& place_of = {}) const {
         const BallTree tree = build_ball_tree(result_.balls);
-        std::vector<NearestBall> nearest(points.size());
-        for_each_index(points.size(),
-                       [&](std::size_t i) { nearest[i] = nearest_ball(tree, std::invoke(place_of, points[i])); });
-        return nearest;
+        return mapped<NearestBall>(points.size(),
+                                   [&](std::size_t i) { return nearest_ball(tree, std::invoke(place_of, points[i])); });
     }
 
     // No point may be farther from the union than this, in units of the sampling tolerance; then no critical point may
@@ -338,11 +330,7 @@ class Repair {
         for (const auto& [a, b] : edges_) {
             sets.join(a, b);
         }
-        std::vector<Index> components(result_.balls.size());
-        for (Index i = 0; i < std::ssize(components); ++i) {
-            components[i] = sets.find(i);
-        }
-        return components;
+        return sets.all();
     }
 
     // The largest components, as many as the solid has: of the balls that stand for them. The others are islands.
@@ -431,8 +419,7 @@ class Repair {
 
     // Those that cover a critical point outside the solid.
     std::vector<Ball> polar_balls_at_gaps() const {
-        std::vector<Point> places(result_.report.gaps.size());
-        std::ranges::transform(result_.report.gaps, places.begin(), &Gap::place);
+        const auto places = each_of<Point>(result_.report.gaps, &Gap::place);
         const PointTree tree = build_point_tree(places);
         std::vector<Ball> polar = inner_balls(samples_);
         std::erase_if(polar, [&](const Ball& ball) {
@@ -445,8 +432,7 @@ class Repair {
 
     // How far balls stick out of the solid.
     double largest_protrusion(std::span<const Ball> balls) {
-        std::vector<Point> centers(balls.size());
-        std::ranges::transform(balls, centers.begin(), &Ball::center);
+        const auto centers = each_of<Point>(balls, &Ball::center);
         const std::vector<double> bounds(balls.size(), kInfinity);
         const std::vector<std::optional<Point>> nearest = nearest_of(solid_, centers, bounds);
         result_.report.queries += std::ssize(centers);
@@ -573,8 +559,7 @@ class Repair {
     };
 
     Gaps seeds_at_gaps(std::span<const CriticalPoint> critical, RepairStep& step) const {
-        std::vector<Point> places(critical.size());
-        std::ranges::transform(critical, places.begin(), &CriticalPoint::place);
+        auto places = each_of<Point>(critical, &CriticalPoint::place);
         const std::vector<std::uint8_t> is_inside = sides_of(solid_, places);
         Gaps gaps;
         for (std::size_t i = 0; i < critical.size(); ++i) {

@@ -9,7 +9,22 @@
 #include <cmath>
 #include <numbers>
 
+#include "scaleaxis/geometry.hpp"
+
 namespace scaleaxis::inline v1 {
+
+/// A vector of length 1 at right angles to another one, which is not 0.
+inline Point any_normal_to(const Point& v) {
+    const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
+    return unit(cross(v, x <= y && x <= z ? Point{1, 0, 0} : y <= z ? Point{0, 1, 0} : Point{0, 0, 1}));
+}
+
+/// Two unit vectors at right angles to a third one and to each other.
+inline std::array<Point, 2> across(const Point& direction) {
+    const Point other = std::abs(direction.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
+    const Point first = unit(cross(direction, other));
+    return {first, cross(direction, first)};
+}
 
 /// Cosine and sine of a number of right angles, and `x` more: up to pi/4.
 inline std::array<double, 2> on_circle(double quarters, double x) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <iterator>
 #include <numeric>
 #include <utility>
 #include <vector>
@@ -20,6 +21,24 @@ class DisjointSets {
             i = parents_[i];
         }
         return i;
+    }
+
+    /// The representative of each index.
+    std::vector<Index> all() {
+        for (Index& parent : parents_) {
+            parent = find(parent);
+        }
+        return parents_;
+    }
+
+    /// The set of each index as a number, and how many there are: numbered by their smallest indices.
+    std::pair<std::vector<Index>, Index> numbered() {
+        std::vector<Index> numbers = all();
+        Index count = 0;
+        for (Index i = 0; i < std::ssize(numbers); ++i) {
+            numbers[i] = numbers[i] == i ? count++ : numbers[numbers[i]];  // a representative has its number before
+        }
+        return {std::move(numbers), count};
     }
 
     /// Returns false if the two were in one set already.

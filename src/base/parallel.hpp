@@ -102,6 +102,15 @@ void for_each_index(Size count, const Body& body, Size grain = 1024) {
     stop_if_cancelled();
 }
 
+/// The values of `of(i)` for `0 ≤ i < count`, which are found in parallel.
+template <class T, class Size, class Of>
+std::vector<T> mapped(Size count, const Of& of, Size grain = 1024) {
+    std::vector<T> result(static_cast<std::size_t>(count));
+    for_each_index(
+        count, [&](Size i) { result[i] = static_cast<T>(of(i)); }, grain);
+    return result;
+}
+
 template <class T>
 void append(std::vector<T>& all, const std::vector<T>& part) {
     all.insert(all.end(), part.begin(), part.end());
@@ -145,6 +154,13 @@ Out collect(Size count, const Body& body, Size grain = 4096) {
         },
         std::size_t{1});
     return join(parts);
+}
+
+/// Calls all of these functions, at the same time where threads are free.
+template <class... Work>
+void run_together(const Work&... work) {
+    tasks::parallel_invoke(work...);
+    stop_if_cancelled();
 }
 
 /// Reports progress and throws `Cancelled` if the callback says so. `part` runs from 0 to 1 within the stage.

@@ -3,9 +3,11 @@
 /// Random numbers that are a pure function of their position, the same for any number of threads, and points.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
+#include "base/angles.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -32,6 +34,14 @@ constexpr double random_unit(std::uint64_t seed, std::uint64_t i, std::uint64_t 
 inline Point random_direction(std::uint64_t seed, std::uint64_t i) {
     const auto coordinate = [&](std::uint64_t k) { return 2.0 * random_unit(seed, i, k) - 1.0; };
     return (1.0 / std::sqrt(3.0)) * Point{coordinate(0), coordinate(1), coordinate(2)};
+}
+
+/// Direction `k` of element `i`, uniform on the unit sphere.
+inline Point random_unit_vector(std::uint64_t seed, std::uint64_t i, std::uint64_t k) {
+    const double z = 2.0 * random_unit(seed, i, 2 * k) - 1.0;
+    const auto [cosine, sine] = on_circle(random_unit(seed, i, 2 * k + 1));
+    const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
+    return {across * cosine, across * sine, z};
 }
 
 /// A point of the triangle `abc`, uniform if `x` and `y` are, in [0, 1).

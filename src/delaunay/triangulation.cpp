@@ -179,8 +179,7 @@ Triangulation TriangulationBuilder::finish_fresh(std::vector<std::uint8_t>& is_f
     const std::vector<std::uint8_t> is_near = near_fresh();
     std::vector<Index> slots_of;
     Triangulation part = finish_wanted([&](Index slot) { return is_near[slot] != 0; }, &slots_of);
-    is_fresh_cell.resize(slots_of.size());
-    for_each_index(slots_of.size(), [&](std::size_t i) { is_fresh_cell[i] = is_fresh(slots_of[i]) ? 1 : 0; });
+    is_fresh_cell = mapped<std::uint8_t>(slots_of.size(), [&](std::size_t i) { return is_fresh(slots_of[i]) ? 1 : 0; });
     return part;
 }
 

@@ -17,6 +17,7 @@
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
 #include "base/files.hpp"
+#include "base/vectors.hpp"
 #include "io/checks.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
@@ -492,13 +493,9 @@ void check_size(std::uintmax_t bytes) {
 
 std::vector<Index> listed_edges(const MedialComplex& complex, const AxisFileOptions& options) {
     const std::vector<double> last_faces = last_faces_of(complex, options.face_scales, 0.0);
-    std::vector<Index> edges;
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        if (last_faces[e] < (options.edge_scales.empty() ? 1.0 : options.edge_scales[e])) {
-            edges.push_back(e);
-        }
-    }
-    return edges;
+    return indices_where(complex.edges.size(), [&](Index e) {
+        return last_faces[e] < (options.edge_scales.empty() ? 1.0 : options.edge_scales[e]);
+    });
 }
 
 }  // namespace scaleaxis::io

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "io/formats.hpp"
 #include "io/text_reader.hpp"
 
@@ -25,8 +26,7 @@ std::vector<Edge> new_diagonals(const MedialComplex& complex) {
             diagonals.push_back({std::min(corners[0], corners[k]), std::max(corners[0], corners[k])});
         }
     }
-    std::ranges::sort(diagonals);
-    diagonals.erase(std::unique(diagonals.begin(), diagonals.end()), diagonals.end());
+    sort_unique(diagonals);
     std::vector<Edge> edges = complex.edges;
     std::ranges::sort(edges);
     std::vector<Edge> result;

@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "io/formats.hpp"
 #include "io/ply_elements.hpp"
 #include "io/text_reader.hpp"
@@ -117,8 +118,7 @@ void read_faces(const PlyElement& element, MedialComplex& complex, StoredScales&
     end_face();
 
     const auto of_faces = [&](const std::vector<double>& values) {
-        std::vector<double> result(firsts.size());
-        std::ranges::transform(firsts, result.begin(), [&](std::size_t i) { return values[i]; });
+        const auto result = each_of<double>(firsts, [&](std::size_t i) { return values[i]; });
         return result;
     };
     if (const PlyProperty* sheet = find_number(element, "sheet")) {

@@ -64,8 +64,8 @@ double largest_distance(const SampledUnion& made) {
     }
     const BallTree tree = build_ball_tree(made.balls.balls);
     const std::vector<Point>& samples = made.samples.points;
-    std::vector<double> distances(samples.size());
-    for_each_index(samples.size(), [&](std::size_t i) { distances[i] = nearest_ball(tree, samples[i]).distance; });
+    const auto distances =
+        mapped<double>(samples.size(), [&](std::size_t i) { return nearest_ball(tree, samples[i]).distance; });
     return std::max(0.0, std::ranges::max(distances));
 }
 

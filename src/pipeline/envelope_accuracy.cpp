@@ -41,9 +41,8 @@ EnvelopeAccuracy accuracy_of(const Envelope& envelope, std::span<const Point> sa
                              double spacing) {
     const EnvelopeBoundary boundary(envelope, spacing);
     EnvelopeAccuracy accuracy;
-    std::vector<double> distances(samples.size());
-    for_each_index(
-        samples.size(), [&](std::size_t i) { distances[i] = boundary.distance(samples[i]); }, std::size_t{256});
+    auto distances = mapped<double>(
+        samples.size(), [&](std::size_t i) { return boundary.distance(samples[i]); }, std::size_t{256});
     for (const double distance : distances) {
         accuracy.solid_to_envelope = std::max(accuracy.solid_to_envelope, distance);
         accuracy.mean_solid_to_envelope += distance / static_cast<double>(samples.size());
@@ -88,9 +87,8 @@ double largest_distance_from(const Solid& solid, const Envelope& envelope, doubl
         return 0.0;
     }
     const EnvelopeBoundary boundary(envelope, spacing);
-    std::vector<double> distances(points.size());
-    for_each_index(
-        points.size(), [&](std::size_t i) { distances[i] = boundary.distance(points[i]); }, std::size_t{256});
+    const auto distances = mapped<double>(
+        points.size(), [&](std::size_t i) { return boundary.distance(points[i]); }, std::size_t{256});
     return std::ranges::max(distances);
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "base/faults.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"

@@ -13,6 +13,7 @@
 #include "axis/edit/slivers.hpp"
 #include "axis/stages/refit.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"

@@ -4,6 +4,7 @@
 
 #include "base/files.hpp"
 #include "base/formats/json.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/report.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -125,11 +126,7 @@ Json json_of(const Diagnostic& diagnostic) {
 }
 
 Json json_of(std::span<const Diagnostic> diagnostics) {
-    Json list = Json::array();
-    for (const Diagnostic& diagnostic : diagnostics) {
-        list.push_back(json_of(diagnostic));
-    }
-    return list;
+    return each_of<Json>(diagnostics, [&](const Diagnostic& diagnostic) { return json_of(diagnostic); });
 }
 
 Json json_of(const Box& box) {
@@ -223,10 +220,8 @@ Json json_of(const PointsReport& points) {
 }
 
 Json json_of(const ImageReport& image) {
-    Json directions = Json::array();
-    for (const Point& direction : image.directions) {
-        directions.push_back(coordinates(direction));
-    }
+    const Json directions =
+        each_of<Json>(image.directions, [&](const Point& direction) { return coordinates(direction); });
     constexpr std::size_t kMostLabels = 256;
     Json labels = Json::array();
     if (image.labels.size() <= kMostLabels) {
@@ -317,10 +312,7 @@ Json json_of(const DeltaAttempt& attempt) {
 }
 
 Json json_of(const DeltaChoice& choice) {
-    Json attempts = Json::array();
-    for (const DeltaAttempt& attempt : choice.attempts) {
-        attempts.push_back(json_of(attempt));
-    }
+    const Json attempts = each_of<Json>(choice.attempts, [&](const DeltaAttempt& attempt) { return json_of(attempt); });
     return {{"coarsest", choice.range.coarsest.value()},
             {"finest", choice.range.finest.value()},
             {"chosen", choice.attempts[choice.chosen].delta},
@@ -328,10 +320,7 @@ Json json_of(const DeltaChoice& choice) {
 }
 
 Json json_of(const FitReport& fit) {
-    Json steps = Json::array();
-    for (const RepairStep& step : fit.repair.steps) {
-        steps.push_back(json_of(step));
-    }
+    const Json steps = each_of<Json>(fit.repair.steps, [&](const RepairStep& step) { return json_of(step); });
     const UnionAccuracy& accuracy = fit.accuracy;
     return {{"outside", fit.fit.outside},
             {"repeated", fit.fit.repeated},
@@ -359,19 +348,16 @@ Json json_of(const FitReport& fit) {
 }
 
 Json json_of(std::span<const StageCost> costs) {
-    Json list = Json::array();
-    for (const StageCost& cost : costs) {
-        list.push_back({{"stage", cost.stage}, {"seconds", cost.seconds}, {"peak_memory", cost.peak_memory}});
-    }
-    return list;
+    return each_of<Json>(costs, [&](const StageCost& cost) {
+        return Json{{"stage", cost.stage}, {"seconds", cost.seconds}, {"peak_memory", cost.peak_memory}};
+    });
 }
 
 Json json_of(const AxisReport& axis) {
     const Agreement agrees = agreement(axis);
-    Json gaps = Json::array();
-    for (const Gap& gap : axis.closed_gaps) {
-        gaps.push_back({{"place", coordinates(gap.place)}, {"width", gap.width}, {"scale", gap.scale}});
-    }
+    const Json gaps = each_of<Json>(axis.closed_gaps, [&](const Gap& gap) {
+        return Json{{"place", coordinates(gap.place)}, {"width", gap.width}, {"scale", gap.scale}};
+    });
     return {
         {"scale", axis.scale},
         {"file", utf8_of(axis.file)},
@@ -499,15 +485,14 @@ std::string to_json(const Walls& walls) {
 }
 
 std::string to_json(std::span<const FiltrationLevel> levels) {
-    Json result = Json::array();
-    for (const FiltrationLevel& level : levels) {
-        result.push_back({{"scale", level.scale},
-                          {"sheets", level.sheets},
-                          {"balls", level.balls},
-                          {"area", level.area},
-                          {"curve_length", level.curve_length},
-                          {"volume", level.volume}});
-    }
+    const Json result = each_of<Json>(levels, [&](const FiltrationLevel& level) {
+        return Json{{"scale", level.scale},
+                    {"sheets", level.sheets},
+                    {"balls", level.balls},
+                    {"area", level.area},
+                    {"curve_length", level.curve_length},
+                    {"volume", level.volume}};
+    });
     return result.dump();
 }
 std::string to_json(const ScalePlateau& plateau) {

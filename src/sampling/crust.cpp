@@ -11,6 +11,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "delaunay/power_diagram.hpp"
 #include "delaunay/triangulation.hpp"
 #include "sampling/restricted_facets.hpp"
@@ -18,6 +19,7 @@
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/crust.hpp"
 #include "scaleaxis/errors.hpp"
+#include "spatial/extent.hpp"
 #include "spatial/spheres.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -48,10 +50,7 @@ struct Diagram {
 };
 
 Diagram diagram_of(const std::vector<Point>& points) {
-    Box box;
-    for (const Point& p : points) {
-        box.extend(p);
-    }
+    const Box box = box_around(points);
     const Point center = midpoint(box.min, box.max);
     const double reach = 0.5 * kSurrounding * box.diagonal();
     std::vector<Point> all = points;
@@ -214,12 +213,7 @@ std::vector<std::uint8_t> label_poles(const Diagram& diagram, const Poles& poles
     Links links(poles.cells.size());
     link_opposite_poles(diagram, poles, links);
     link_meeting_poles(diagram, poles, links);
-    std::vector<Index> outside;
-    for (std::size_t i = 0; i < poles.cells.size(); ++i) {
-        if (diagram.has_corner(poles.cells[i])) {
-            outside.push_back(static_cast<Index>(i));
-        }
-    }
+    const auto outside = indices_where(poles.cells.size(), [&](Index i) { return diagram.has_corner(poles.cells[i]); });
     return spread_beliefs(links, outside);
 }
 

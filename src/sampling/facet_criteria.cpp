@@ -11,6 +11,7 @@
 
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "sampling/size_field.hpp"
 #include "spatial/ball_tree.hpp"
@@ -183,10 +184,7 @@ std::vector<Point> uniform_samples(LabelledTriangulation& triangulation, double 
                                    SamplingStatistics& statistics) {
     std::vector<CrossedFacet> facets = ask_fresh_facets(triangulation, tolerance, statistics);
     std::erase_if(facets, [&](const CrossedFacet& facet) { return !is_too_large(facet, tolerance); });
-    std::vector<Point> points;
-    for (const CrossedFacet& facet : sorted(std::move(facets))) {
-        points.push_back(facet.crossing);
-    }
+    const auto points = each_of<Point>(sorted(std::move(facets)), &CrossedFacet::crossing);
     return poisson_disk_subset(points, kBatchSpacing * tolerance, seed);
 }
 
@@ -212,8 +210,7 @@ std::vector<Point> adaptive_samples(LabelledTriangulation& triangulation, std::v
         bad.push_back({facet.vertices, {facet.crossing, std::max(0.5 * facet.radius, allowed.length)}});
     }
     std::ranges::sort(bad, {}, &std::pair<Facet, SizedPoint>::first);
-    std::vector<SizedPoint> points(bad.size());
-    std::ranges::transform(bad, points.begin(), &std::pair<Facet, SizedPoint>::second);
+    const auto points = each_of<SizedPoint>(bad, &std::pair<Facet, SizedPoint>::second);
     return thinned(points, 0.0, 0.5 * std::min(kLeastSize * tolerance, thin.least()), kPartOfSize, seed);
 }
 
@@ -234,13 +231,12 @@ std::vector<Point> far_samples(const LabelledTriangulation& triangulation, std::
     if (points.empty()) {
         return {};
     }
-    std::vector<Point> samples(triangulation.points());
-    for_each_index(samples.size(), [&](std::size_t v) { samples[v] = triangulation.point(static_cast<Index>(v)); });
+    const auto samples = mapped<Point>(triangulation.points(),
+                                       [&](std::size_t v) { return triangulation.point(static_cast<Index>(v)); });
     const PointTree tree = build_point_tree(samples);
     // Parts without balls are found at once, and then sampled more and more densely.
-    std::vector<SizedPoint> sized(points.size());
-    for_each_index(points.size(), [&](std::size_t i) {
-        sized[i] = {points[i], std::sqrt(nearest_point(tree, points[i]).squared_distance)};
+    const auto sized = mapped<SizedPoint>(points.size(), [&](std::size_t i) {
+        return SizedPoint{points[i], std::sqrt(nearest_point(tree, points[i]).squared_distance)};
     });
     return thinned(sized, 0.0, 0.5 * kLeastSize * tolerance, kPartOfSize, seed);
 }
@@ -262,9 +258,8 @@ std::vector<Point> deviation_samples(const LabelledTriangulation& triangulation,
 std::vector<Point> crease_samples(const LabelledTriangulation& triangulation, const Creases& creases, double tolerance,
                                   std::uint64_t seed, SamplingStatistics& statistics) {
     // Pieces, and vertices on creases, by their positions among the samples of the creases.
-    std::vector<Index> position(triangulation.points());
-    for_each_index(position.size(), [&](std::size_t v) {
-        position[v] = creases.position_of(triangulation.point(static_cast<Index>(v)));
+    const auto position = mapped<Index>(triangulation.points(), [&](std::size_t v) {
+        return creases.position_of(triangulation.point(static_cast<Index>(v)));
     });
     const std::vector<RestrictedFacet> all = triangulation.restricted_facets();
     using Ends = std::pair<Index, Index>;
@@ -340,10 +335,7 @@ std::vector<Point> manifold_samples(const LabelledTriangulation& triangulation, 
             }
         }
     }
-    std::vector<CrossedFacet> of_irregular;
-    for (const Index v : irregular) {
-        of_irregular.push_back(widest[v]);
-    }
+    const auto of_irregular = each_of<CrossedFacet>(irregular, [&](Index v) { return widest[v]; });
     std::vector<Point> points = thinned(of_irregular, tolerance, floor * tolerance, seed);
     if (attempt < kMaxStrayRounds) {
         append(points, points_around(triangulation, strays(triangulation, irregular, radii), tolerance,

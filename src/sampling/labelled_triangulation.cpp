@@ -9,6 +9,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "sampling/inner_cells.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/errors.hpp"
@@ -137,8 +138,7 @@ void LabelledTriangulation::label_fresh_cells() {
         }
     }
     std::erase_if(unlabelled, [&](Index group) { return known[group] != Side::kUnknown; });
-    std::vector<Index> asked(unlabelled.size());
-    std::ranges::transform(unlabelled, asked.begin(), [&](Index group) { return deepest[group]; });
+    const auto asked = each_of<Index>(unlabelled, [&](Index group) { return deepest[group]; });
     const std::vector<Side> answers = ask(asked);
     for (std::size_t i = 0; i < asked.size(); ++i) {
         known[unlabelled[i]] = answers[i];
@@ -164,8 +164,7 @@ Index LabelledTriangulation::relabel(std::span<const Index> cells) {
 
 std::vector<Side> LabelledTriangulation::ask(std::span<const Index> cells) {
     inside_queries_ += static_cast<std::int64_t>(cells.size());
-    std::vector<Point> centers(cells.size());
-    std::ranges::transform(cells, centers.begin(), [&](Index cell) { return spheres_[cell].center; });
+    const auto centers = each_of<Point>(cells, [&](Index cell) { return spheres_[cell].center; });
     const std::vector<std::uint8_t> is_inside = sides_of(solid_, centers);
     std::vector<Side> sides(cells.size());
     std::ranges::transform(is_inside, sides.begin(),

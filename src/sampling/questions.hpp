@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/solid.hpp"
 #include "spatial/spatial_order.hpp"
 
@@ -54,11 +55,7 @@ std::vector<Answer> answers_of(const Solid& solid, std::span<const Point> points
     collect_batches<std::vector<Index>>(
         solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<Index>&) {
             const std::span<const Index> asked = std::span(order).subspan(begin, end - begin);
-            std::vector<Point> places;
-            places.reserve(asked.size());
-            for (const Index i : asked) {
-                places.push_back(points[i]);
-            }
+            const auto places = each_of<Point>(asked, [&](Index i) { return points[i]; });
             std::vector<Answer> found(asked.size());
             ask(asked, places, found);
             for (std::size_t k = 0; k < asked.size(); ++k) {
@@ -85,11 +82,7 @@ inline std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::spa
     return answers_of<std::optional<Point>>(
         solid, points,
         [&](std::span<const Index> asked, std::span<const Point> places, std::span<std::optional<Point>> nearest) {
-            std::vector<double> within;
-            within.reserve(asked.size());
-            for (const Index i : asked) {
-                within.push_back(bounds[i]);
-            }
+            const auto within = each_of<double>(asked, [&](Index i) { return bounds[i]; });
             solid.nearest(places, within, nearest);
         });
 }

@@ -185,6 +185,7 @@ void validate(const Solid& solid, const SamplingOptions& options) {
     for (const auto& [a, b] : options.creases) {
         require(is_finite(a) && is_finite(b), "the creases must have finite coordinates");
     }
+    require(options.max_samples >= 1, "the largest number of samples must be at least 1");
 }
 
 /// Known points of the boundary, and those of them that the triangulation begins with.

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/numbers.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -19,8 +20,7 @@ ThinSizes::ThinSizes(std::span<const Ball> balls, double reach) : reach_(reach),
     if (balls.empty()) {
         return;
     }
-    std::vector<Point> centers(balls.size());
-    std::ranges::transform(balls, centers.begin(), &Ball::center);
+    const auto centers = each_of<Point>(balls, &Ball::center);
     tree_ = build_point_tree(centers);
     for (const Index i : tree_.order) {
         sizes_.push_back(kOfThinPart * balls[i].radius);

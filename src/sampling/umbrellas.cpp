@@ -13,6 +13,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "sampling/restricted_facets.hpp"
 #include "spatial/spheres.hpp"
 
@@ -54,11 +55,8 @@ bool is_single_cycle(std::span<const Edge> edges) {
 }
 
 std::vector<Facet> all_facets(const Samples& samples) {
-    std::vector<Facet> facets;
-    for (const RestrictedFacet& facet : restricted_facets(samples)) {
-        facets.push_back(vertices_of(samples, facet));
-    }
-    return facets;
+    return each_of<Facet>(restricted_facets(samples),
+                          [&](const RestrictedFacet& facet) { return vertices_of(samples, facet); });
 }
 
 /// See `SamplingStatistics::facet_sizes`. \param size in tolerances

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "base/faults.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {

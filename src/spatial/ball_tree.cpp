@@ -52,15 +52,13 @@ void shrink_to_centers(BallTree& tree) {
 }  // namespace
 
 BallTree build_ball_tree(std::span<const Ball> balls) {
-    std::vector<Box> boxes(balls.size());
-    for_each_index(balls.size(), [&](std::size_t i) {
+    const auto boxes = mapped<Box>(balls.size(), [&](std::size_t i) {
         const auto& [center, radius] = balls[i];
         const Point r{radius, radius, radius};
-        boxes[i] = {center - r, center + r};
+        return Box{center - r, center + r};
     });
     BallTree tree{build_box_tree(boxes), {}, {}};
-    tree.balls.resize(balls.size());
-    for_each_index(balls.size(), [&](std::size_t i) { tree.balls[i] = balls[tree.order[i]]; });
+    tree.balls = mapped<Ball>(balls.size(), [&](std::size_t i) { return balls[tree.order[i]]; });
     shrink_to_centers(tree);
     return tree;
 }

@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "base/disjoint_sets.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
+
+inline Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
+    const Point d = b - a;
+    const double square = squared_norm(d);
+    return square > 0.0 ? a + std::clamp(dot(p - a, d) / square, 0.0, 1.0) * d : a;
+}
 
 inline double triangle_area(const Point& a, const Point& b, const Point& c) { return 0.5 * norm(cross(b - a, c - a)); }
 

@@ -6,29 +6,18 @@
 #include <span>
 #include <string>
 
+#include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/nearest.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/spatial_order.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
 using TriangleCorners = std::array<Point, 3>;
-
-Point nearest_on_segment(const Point& a, const Point& b, const Point& p) {
-    const Point d = b - a;
-    const double square = squared_norm(d);
-    return square > 0.0 ? a + std::clamp(dot(p - a, d) / square, 0.0, 1.0) * d : a;
-}
-
-/// A vector of length 1 at right angles to another one, which is not 0.
-Point any_normal_to(const Point& v) {
-    const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);
-    const Point axis = x <= y && x <= z ? Point{1, 0, 0} : (y <= z ? Point{0, 1, 0} : Point{0, 0, 1});
-    return unit(cross(v, axis));
-}
 
 /// A plane, or a half-plane of it, as in `TriangleBlock`.
 struct Side {

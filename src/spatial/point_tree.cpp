@@ -27,11 +27,9 @@ Float4 lower_bounds(const BoxTree::Node& node, const FramedPoint& p) {
 }  // namespace
 
 PointTree build_point_tree(std::span<const Point> points) {
-    std::vector<Box> boxes(points.size());
-    for_each_index(points.size(), [&](std::size_t i) { boxes[i] = {points[i], points[i]}; });
+    const auto boxes = mapped<Box>(points.size(), [&](std::size_t i) { return Box{points[i], points[i]}; });
     PointTree tree{build_box_tree(boxes), {}};
-    tree.points.resize(points.size());
-    for_each_index(points.size(), [&](std::size_t i) { tree.points[i] = points[tree.order[i]]; });
+    tree.points = mapped<Point>(points.size(), [&](std::size_t i) { return points[tree.order[i]]; });
     return tree;
 }
 

@@ -76,8 +76,8 @@ struct Block {
 
 /// The blocks that have points, by ascending key.
 std::vector<Block> blocks_of(const std::vector<Point>& points, const Grid& grid) {
-    std::vector<std::uint64_t> keys(points.size());
-    for_each_index(points.size(), [&](std::size_t i) { keys[i] = key_of(grid.place_of(points[i])); });
+    const auto keys =
+        mapped<std::uint64_t>(points.size(), [&](std::size_t i) { return key_of(grid.place_of(points[i])); });
     // Points mostly come in an order with locality: runs of points of one block are sorted, which are fewer.
     CancellationPoint ask_whether_cancelled;
     std::vector<Run> runs;

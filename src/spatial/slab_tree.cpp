@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -49,13 +50,9 @@ using slab_tree_details::in_frame;
 using slab_tree_details::least_distances;
 
 SlabTree build_slab_tree(std::span<const Slab> slabs) {
-    std::vector<Box> boxes(slabs.size());
-    for_each_index(slabs.size(), [&](std::size_t i) { boxes[i] = box_around_simplex(slabs[i]); });
+    const auto boxes = mapped<Box>(slabs.size(), [&](std::size_t i) { return box_around_simplex(slabs[i]); });
     SlabTree tree{build_box_tree(boxes), {}, {}};
-    tree.slabs.reserve(slabs.size());
-    for (const Index i : tree.order) {
-        tree.slabs.push_back(slabs[i]);
-    }
+    tree.slabs = each_of<Slab>(tree.order, [&](Index i) { return slabs[i]; });
     tree.radii.resize(tree.nodes.size());
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children before parents
         const BoxTree::Node& node = tree.nodes[n];

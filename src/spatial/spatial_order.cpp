@@ -52,10 +52,9 @@ std::vector<Keyed> sorted_keys(std::span<const Point> points) {
     const double scale = longest > 1e-290 ? cells / longest : 0;
     const auto cell = [&](double offset) { return static_cast<std::uint32_t>(std::min(offset * scale, cells)); };
 
-    std::vector<Keyed> keys(points.size());
-    for_each_index(points.size(), [&](std::size_t i) {
+    auto keys = mapped<Keyed>(points.size(), [&](std::size_t i) {
         const Point p = points[i] - box.min;
-        keys[i] = {hilbert_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<Index>(i)};
+        return Keyed{hilbert_key(cell(p.x), cell(p.y), cell(p.z)), static_cast<Index>(i)};
     });
     radix_sort(keys);
     return keys;
@@ -65,9 +64,7 @@ std::vector<Keyed> sorted_keys(std::span<const Point> points) {
 
 std::vector<Index> hilbert_order(std::span<const Point> points) {
     const std::vector<Keyed> keys = sorted_keys(points);
-    std::vector<Index> order(keys.size());
-    for_each_index(keys.size(), [&](std::size_t i) { order[i] = keys[i].point; });
-    return order;
+    return mapped<Index>(keys.size(), [&](std::size_t i) { return keys[i].point; });
 }
 
 InsertionOrder insertion_order(std::span<const Point> points) {

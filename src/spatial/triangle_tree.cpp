@@ -29,8 +29,8 @@ TriangleMesh reordered(const TriangleMesh& mesh, const std::vector<Index>& order
 }  // namespace
 
 Bvh build_bvh(TriangleMesh mesh) {
-    std::vector<Box> boxes(mesh.triangles.size());
-    for_each_index(boxes.size(), [&](std::size_t t) { boxes[t] = box_of_triangle(mesh, static_cast<Index>(t)); });
+    const auto boxes =
+        mapped<Box>(mesh.triangles.size(), [&](std::size_t t) { return box_of_triangle(mesh, static_cast<Index>(t)); });
     Bvh bvh{build_box_tree(boxes), {}};
     bvh.mesh = reordered(mesh, bvh.order);
     return bvh;

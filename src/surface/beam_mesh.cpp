@@ -45,8 +45,7 @@ std::vector<Ring> rings_of(const Beam& beam, double length, int sides) {
 void append_beam(const Beam& beam, int sides, TriangleMesh& to) {
     const double length = distance(beam.ends[0], beam.ends[1]);
     const Point along = unit(beam.ends[1] - beam.ends[0]);
-    const Point u = unit(cross(along, std::abs(along.x) < 0.6 ? Point{1, 0, 0} : Point{0, 1, 0}));
-    const Point v = cross(along, u);
+    const auto [u, v] = across(along);
     const std::vector<Ring> rings = rings_of(beam, length, sides);
     const auto first = static_cast<Index>(to.vertices.size());
     for (const Ring& ring : rings) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/faults.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -13,10 +14,7 @@ EnvelopeBoundary::EnvelopeBoundary(const Envelope& envelope, double spacing) : e
     require(envelope.data().area_of_parts() / (spacing * spacing) < kMost,
             "the spacing would take more than 1e11 points; choose a larger one");
     points_ = envelope.data().boundary_points(spacing);
-    std::vector<Point> places;
-    for (const SurfacePoint& point : points_) {
-        places.push_back(point.point);
-    }
+    const auto places = each_of<Point>(points_, &SurfacePoint::point);
     tree_ = build_point_tree(places);
 }
 

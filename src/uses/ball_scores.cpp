@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -36,9 +37,7 @@ constexpr double kMostPoints = 3e6;
 constexpr double kBeside = 1e-3;
 
 std::vector<double> distances_to(const BallTree& tree, std::span<const Point> points) {
-    std::vector<double> distances(points.size());
-    for_each_index(points.size(), [&](std::size_t i) { distances[i] = nearest_ball(tree, points[i]).distance; });
-    return distances;
+    return mapped<double>(points.size(), [&](std::size_t i) { return nearest_ball(tree, points[i]).distance; });
 }
 
 // One point in each cell of a grid.
@@ -46,16 +45,14 @@ std::vector<Point> jittered_grid(const Box& box, double cell, std::uint64_t seed
     const auto steps = [&](double length) { return std::max<std::int64_t>(1, std::llround(length / cell)); };
     const Point size = box.max - box.min;
     const std::int64_t nx = steps(size.x), ny = steps(size.y), nz = steps(size.z);
-    std::vector<Point> points(static_cast<std::size_t>(nx * ny * nz));
-    for_each_index(points.size(), [&](std::size_t i) {
+    return mapped<Point>(static_cast<std::size_t>(nx * ny * nz), [&](std::size_t i) {
         const auto at = static_cast<std::int64_t>(i);
         const auto along = [&](std::int64_t k, std::int64_t n, double low, double length, std::uint64_t axis) {
             return low + length * (static_cast<double>(k) + random_unit(seed, i, axis)) / static_cast<double>(n);
         };
-        points[i] = {along(at % nx, nx, box.min.x, size.x, 0), along(at / nx % ny, ny, box.min.y, size.y, 1),
+        return Point{along(at % nx, nx, box.min.x, size.x, 0), along(at / nx % ny, ny, box.min.y, size.y, 1),
                      along(at / nx / ny, nz, box.min.z, size.z, 2)};
     });
-    return points;
 }
 
 void score_volume(BallScores& scores, const BallTree& tree, const Solid& solid, const Box& box, double rounding,
@@ -184,10 +181,9 @@ std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid
                                    const Execution& execution) {
     check_knows_nearest(solid);
     return in_arena(execution, [&] {
-        std::vector<double> areas;
-        for (const auto& [a, b, c] : triangles.triangles) {
-            areas.push_back(triangle_area(triangles.vertices[a], triangles.vertices[b], triangles.vertices[c]));
-        }
+        const auto areas = each_of<double>(triangles.triangles, [&](const auto& t) {
+            return triangle_area(triangles.vertices[t[0]], triangles.vertices[t[1]], triangles.vertices[t[2]]);
+        });
         const double area = std::accumulate(areas.begin(), areas.end(), 0.0);
         const double density = std::min(kPointsOfSpacing / (spacing * spacing), kMostPoints / area);
         const std::vector<Point> points =

@@ -7,11 +7,15 @@
 #include <array>
 #include <vector>
 
+#include "base/vectors.hpp"
 #include "scaleaxis/geometry.hpp"
 
 namespace scaleaxis::inline v1 {
 
 using MeshEdge = std::array<Index, 2>;  // the smaller vertex first
+
+/// \throws UnusableInput if a triangle has a vertex that the mesh does not have
+void check_triangles(const TriangleMesh& mesh);
 
 /// The edges of a mesh that are wanted, each once, in order.
 template <class Wanted>
@@ -25,12 +29,14 @@ std::vector<MeshEdge> edges_of(const TriangleMesh& mesh, const Wanted& is_wanted
             }
         }
     }
-    std::ranges::sort(edges);
-    edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+    sort_unique(edges);
     return edges;
 }
 
 /// Divides edges at points, one for each, and the triangles at them. \param edges ascending, each once
 void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::vector<Point>& points);
+
+/// Divides them in the middle.
+void halve(TriangleMesh& mesh, const std::vector<MeshEdge>& edges);
 
 }  // namespace scaleaxis::inline v1

@@ -13,6 +13,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/ball_union.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -79,8 +80,7 @@ std::vector<Ball> thinned(std::span<const Ball> candidates, Index most, double d
     if (static_cast<Index>(order.size()) <= most) {
         return order;
     }
-    std::vector<Point> centers(order.size());
-    std::ranges::transform(order, centers.begin(), &Ball::center);
+    const auto centers = each_of<Point>(order, &Ball::center);
     const PointTree tree = build_point_tree(centers);
     std::vector<Ball> fewer;
     double spacing = diagonal / std::sqrt(static_cast<double>(most)) / 8.0;
@@ -133,11 +133,7 @@ struct Greedy {
 };
 
 std::vector<Ball> chosen(const SubsetSearch& search, const std::vector<Index>& cover) {
-    std::vector<Ball> balls;
-    for (const Index k : cover) {
-        balls.push_back(search.candidates[k]);
-    }
-    return balls;
+    return each_of<Ball>(cover, [&](Index k) { return search.candidates[k]; });
 }
 
 // The least error for which greedy set cover takes no more than so many balls.
@@ -262,12 +258,7 @@ Placement with_fewest(Placement placement, SubsetSearch& search, const Solid& so
 bool extend(SubsetSearch& search, const Placement& placement, std::span<const Point> all, double known,
             double spacing) {
     const Placement there = placed(placement.balls, all);
-    std::vector<Index> missed;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        if (there.distances[i] > known) {
-            missed.push_back(static_cast<Index>(i));
-        }
-    }
+    auto missed = indices_where(all.size(), [&](Index i) { return there.distances[i] > known; });
     std::ranges::stable_sort(missed, std::greater<>(), [&](Index i) { return there.distances[i]; });
     const std::size_t before = search.points.size();
     for (const Index i : missed) {
@@ -396,9 +387,8 @@ std::vector<Ball> covering(const Placement& placement, std::span<const Point> po
     for (const auto& list : inside) {
         std::ranges::for_each(list, [&](Index i) { ++times[i]; });
     }
-    std::vector<Index> order(radii.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater<>(), [&](Index k) { return radii[k] - placement.balls[k].radius; });
+    const auto order = sorted_indices(
+        radii.size(), [&](Index k) { return radii[k] - placement.balls[k].radius; }, std::greater<>());
     for (const Index k : order) {
         double needed = 0.0;
         for (const Index i : inside[k]) {
@@ -864,10 +854,7 @@ std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count) {
         Ball around;
         std::vector<Ball> balls;
     };
-    std::vector<Group> groups;
-    for (const Ball& ball : balls) {
-        groups.push_back({ball, {ball}});
-    }
+    auto groups = each_of<Group>(balls, [&](const Ball& ball) { return Group{ball, {ball}}; });
     while (static_cast<Index>(groups.size()) > count) {
         std::size_t first = 0, second = 1;
         double least = kInfinity;

@@ -22,6 +22,7 @@
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -67,14 +68,6 @@ void collapse_by_scale(Filtration& filtration, std::span<const double> earliest)
     collapses.run();
 }
 
-std::vector<Ball> balls_of(const MedialComplex& complex) {
-    std::vector<Ball> balls(complex.vertices.size());
-    for (std::size_t v = 0; v < balls.size(); ++v) {
-        balls[v] = {complex.vertices[v], complex.radii[v]};
-    }
-    return balls;
-}
-
 // Of each vertex the largest or the least of the values in its faces.
 std::vector<double> spread(const MedialComplex& complex, const std::vector<double>& values, bool is_largest) {
     std::vector<double> result = values;
@@ -102,9 +95,7 @@ std::vector<double> closed(const MedialComplex& complex, std::vector<double> sca
 
 MedialComplex level_at(const Filtration& filtration, double scale) {
     const auto later = [&](const std::vector<double>& scales) {
-        std::vector<std::uint8_t> is_left(scales.size());
-        std::ranges::transform(scales, is_left.begin(), [&](double s) { return s > scale ? 1 : 0; });
-        return is_left;
+        return each_of<std::uint8_t>(scales, [&](double s) { return s > scale ? 1 : 0; });
     };
     MedialComplex result = subcomplex(filtration.complex, later(filtration.vertex_scales),
                                       later(filtration.edge_scales), later(filtration.face_scales));
@@ -170,7 +161,7 @@ CellScales cell_scales(const Filtration& filtration) {
     constexpr double kCells = 2e6;
     std::vector<std::pair<double, Ball>> balls;  // those that vanish last first
     Box box;
-    const std::vector<Ball> all = balls_of(filtration.complex);
+    const std::vector<Ball> all = balls_at_vertices(filtration.complex);
     for (std::size_t v = 0; v < all.size(); ++v) {
         if (const auto& [center, r] = all[v]; r > 0.0) {
             balls.emplace_back(filtration.vertex_scales[v], all[v]);
@@ -232,7 +223,7 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         Filtration result;
         result.complex = std::move(complex);
         result.largest_scale = options.largest_scale;
-        result.ball_scales = vanishing_scales(balls_of(result.complex), options);
+        result.ball_scales = vanishing_scales(balls_at_vertices(result.complex), options);
         report(execution, kFiltrationStage, kBallsPart);
         collapse_by_scale(result, closed(result.complex, result.ball_scales));
         report(execution, kFiltrationStage, 1.0);

@@ -8,6 +8,9 @@
 #include <vector>
 
 #include "base/parallel.hpp"
+#include "solid/mesh/triangle_edges.hpp"
+#include "spatial/extent.hpp"
+#include "uses/divided_edges.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -24,27 +27,12 @@ constexpr std::size_t kMostFlips = 30;  // for each edge; a fan of n needles tak
 // Side `k` of triangle `t`, from its corner `k` to the next one, is 3 t + k.
 class FaceFlips {
    public:
-    explicit FaceFlips(TriangleMesh mesh) : mesh_(std::move(mesh)), others_(3 * mesh_.triangles.size(), kNone) {
-        Box box;
-        std::ranges::for_each(mesh_.vertices, [&](const Point& p) { box.extend(p); });
-        height_ = kFlatHeight * box.diagonal();
-        struct Side {
-            std::array<Index, 2> ends;
-            Index side;
-        };
-        std::vector<Side> sides;
+    explicit FaceFlips(TriangleMesh mesh)
+        : mesh_(std::move(mesh)), others_(opposite_sides(sides_of_edges(mesh_.triangles, mesh_.vertices.size()))) {
+        height_ = kFlatHeight * box_around(mesh_.vertices).diagonal();
         for (Index s = 0; s < static_cast<Index>(others_.size()); ++s) {
-            const Index a = from(s);
-            const Index b = from(next(s));
-            sides.push_back({{std::min(a, b), std::max(a, b)}, s});
-        }
-        std::ranges::stable_sort(sides, {}, &Side::ends);
-        for (std::size_t i = 0; i + 1 < sides.size(); ++i) {
-            const bool is_pair = sides[i].ends == sides[i + 1].ends && (i == 0 || sides[i - 1].ends != sides[i].ends) &&
-                                 (i + 2 == sides.size() || sides[i + 2].ends != sides[i].ends);
-            if (is_pair && from(sides[i].side) != from(sides[i + 1].side)) {
-                others_[sides[i].side] = sides[i + 1].side;
-                others_[sides[i + 1].side] = sides[i].side;
+            if (others_[s] != kNone && from(s) == from(others_[s])) {  // the triangles do not agree
+                others_[s] = others_[others_[s]] = kNone;
             }
         }
     }
@@ -72,15 +60,14 @@ class FaceFlips {
     }
 
    private:
-    static Index next(Index side) { return side % 3 == 2 ? side - 2 : side + 1; }
-    Index from(Index side) const { return mesh_.triangles[side / 3][side % 3]; }
+    Index from(Index side) const { return start_of(mesh_.triangles, side); }
     const Point& place(Index vertex) const { return mesh_.vertices[vertex]; }
 
     bool is_to_flip(Index s) const {
         const Point& a = place(from(s));
-        const Point& b = place(from(next(s)));
-        const Point& c = place(from(next(next(s))));
-        const Point& d = place(from(next(next(others_[s]))));
+        const Point& b = place(from(next_side(s)));
+        const Point& c = place(from(next_side(next_side(s))));
+        const Point& d = place(from(next_side(next_side(others_[s]))));
         const Point up = cross(b - a, c - a);
         const Point down = cross(a - b, d - b);
         // Do the angles at c and d have a sum of more than 180 degrees?
@@ -107,13 +94,13 @@ class FaceFlips {
     void flip(Index s) {
         const Index o = others_[s];
         const Index a = from(s);
-        const Index b = from(next(s));
-        const Index c = from(next(next(s)));
-        const Index d = from(next(next(o)));
-        const Index bc = others_[next(s)];
-        const Index ca = others_[next(next(s))];
-        const Index ad = others_[next(o)];
-        const Index db = others_[next(next(o))];
+        const Index b = from(next_side(s));
+        const Index c = from(next_side(next_side(s)));
+        const Index d = from(next_side(next_side(o)));
+        const Index bc = others_[next_side(s)];
+        const Index ca = others_[next_side(next_side(s))];
+        const Index ad = others_[next_side(o)];
+        const Index db = others_[next_side(next_side(o))];
         const Index t = s / 3;
         const Index u = o / 3;
         mesh_.triangles[t] = {c, a, d};
@@ -139,6 +126,9 @@ class FaceFlips {
 
 }  // namespace
 
-TriangleMesh with_delaunay_faces(TriangleMesh mesh) { return FaceFlips(std::move(mesh)).run(); }
+TriangleMesh with_delaunay_faces(TriangleMesh mesh) {
+    check_triangles(mesh);
+    return FaceFlips(std::move(mesh)).run();
+}
 
 }  // namespace scaleaxis::inline v1

@@ -12,6 +12,7 @@
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/progress.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -85,10 +86,7 @@ std::vector<PieceOfSurface> divided(const TriangleMesh& surface, Index pieces, s
 }
 
 SurfaceValues values_on(const PieceOfSurface& piece, std::span<const double> values) {
-    std::vector<double> here;
-    for (const Index v : piece.vertices) {
-        here.push_back(values[v]);
-    }
+    const auto here = each_of<double>(piece.vertices, [&](Index v) { return values[v]; });
     SurfaceValues result = surface_values(piece.mesh, here);
     for (Index* vertex : {&result.min_vertex, &result.max_vertex}) {
         *vertex = *vertex == kNone ? kNone : piece.vertices[*vertex];
@@ -169,10 +167,9 @@ void add_sheets(const MedialComplex& axis, const Skeleton& skeleton, const Piece
 
 std::vector<PieceOfSurface> pieces_of_surface(const MedialComplex& axis, const Skeleton& skeleton, const Pieces& pieces,
                                               const TriangleMesh& surface, const Execution& execution) {
-    std::vector<Index> piece_of_vertex;
-    for (const Index node : nearest_nodes(skeleton, axis, surface.vertices, execution)) {
-        piece_of_vertex.push_back(node == kNone ? kNone : pieces.of_node[node]);
-    }
+    const auto piece_of_vertex =
+        each_of<Index>(nearest_nodes(skeleton, axis, surface.vertices, execution),
+                       [&](Index node) { return node == kNone ? kNone : pieces.of_node[node]; });
     return divided(surface, pieces.count, piece_of_vertex);
 }
 
@@ -202,8 +199,7 @@ std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skelet
         pieces_of_surface(axis, skeleton, pieces, surface, part_of(execution, 0.0, 0.5));
     const std::vector<PointThickness> thickness =
         Thickness(axis, options.thickness).at_surface(surface, part_of(execution, 0.5, 1.0));
-    std::vector<double> local(thickness.size());
-    std::ranges::transform(thickness, local.begin(), &PointThickness::thickness);
+    const auto local = each_of<double>(thickness, &PointThickness::thickness);
     return measured(axis, skeleton, pieces, parts, local, options);
 }
 

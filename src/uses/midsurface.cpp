@@ -26,10 +26,14 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/shrinking.hpp"
+#include "solid/mesh/repair/orientation.hpp"
+#include "solid/mesh/triangle_edges.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "uses/ascent.hpp"
+#include "uses/boundary_ahead.hpp"
 #include "uses/wide_parts.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -47,14 +51,10 @@ constexpr double kTangentReach = 0.5;
 // How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
 // are longer run along a wall, as where the free edge of a rib ends in it.
 constexpr double kFarthest = 1.6;
-// The boundary is reached to within this part of the radius.
-constexpr double kReached = 1e-4;
-constexpr int kMostSteps = 20;  // not enough for a side that is met at less than about 25 degrees
 // Where directions around a vertex of the border cancel out more than this there is no way on.
 constexpr double kLeastAgreement = 0.3;
 
 using Flags = std::vector<std::uint8_t>;
-using DistanceToBoundary = std::function<double(const Point&)>;
 
 // The faces at each edge: how many, and the first two.
 struct EdgeFaces {
@@ -343,25 +343,8 @@ class SideDirections {
     std::vector<std::vector<Index>> at_;
 };
 
-// How far the boundary is from a point of the solid in some direction: steps as long as the distance to it, which is
-// positive inside, cannot miss it. 0 if it is too far.
-double way_to_boundary(const Point& from, const Point& direction, double radius, const DistanceToBoundary& distance) {
-    double way = 0.0;
-    for (int step = 0; step < kMostSteps; ++step) {
-        const double left = distance(from + way * direction);
-        if (left <= kReached * radius) {
-            return std::max(way + left, 0.0);
-        }
-        way += left;
-        if (way > kFarthest * radius) {
-            return 0.0;
-        }
-    }
-    return 0.0;
-}
-
 // Strips of triangles from the border to the boundary of the solid.
-void extend(Midsurface& surface, const MedialComplex& complex, const DistanceToBoundary& distance) {
+void extend(Midsurface& surface, const MedialComplex& complex, const DistanceInside& distance) {
     const std::vector<BorderEdge> border = border_of(complex);
     const SideDirections directions(complex, border);
     std::vector<Point> ends(complex.vertices);
@@ -373,8 +356,8 @@ void extend(Midsurface& surface, const MedialComplex& complex, const DistanceToB
             }
             const Point direction = directions.of(static_cast<Index>(v));
             if (direction != Point()) {
-                ends[v] =
-                    ends[v] + way_to_boundary(complex.vertices[v], direction, complex.radii[v], distance) * direction;
+                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], kFarthest, distance);
+                ends[v] = ends[v] + std::max(way.value_or(0.0), 0.0) * direction;
             }
         },
         std::size_t{16});
@@ -405,75 +388,16 @@ void extend(Midsurface& surface, const MedialComplex& complex, const DistanceToB
     }
 }
 
-struct Side {
-    std::array<Index, 2> edge;  // ends ascending
-    Index triangle = kNone;
-    bool is_turned = false;  // the triangle passes the larger end first
-};
-
-// The sides of all triangles; those of the same edge follow one another.
-std::vector<Side> sides_of(const TriangleMesh& mesh) {
-    std::vector<Side> sides;
-    for (Index t = 0; t < static_cast<Index>(mesh.triangles.size()); ++t) {
-        for (int k = 0; k < 3; ++k) {
-            const Index a = mesh.triangles[t][k];
-            const Index b = mesh.triangles[t][(k + 1) % 3];
-            sides.push_back({{std::min(a, b), std::max(a, b)}, t, a > b});
-        }
-    }
-    std::ranges::sort(sides, {}, [](const Side& side) { return std::pair(side.edge, side.triangle); });
-    return sides;
-}
-
-// Calls `use(sides of one edge)` for each edge.
-template <class Use>
-void for_each_edge(std::span<const Side> sides, const Use& use) {
-    for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
-        while (end < sides.size() && sides[end].edge == sides[begin].edge) {
-            ++end;
-        }
-        use(sides.subspan(begin, end - begin));
-    }
-}
-
-// Turns triangles so that each agrees with its neighbours in its sheet.
-void orient(TriangleMesh& mesh) {
-    struct Neighbour {
-        Index triangle;
-        bool is_opposed;
-    };
-    std::vector<std::vector<Neighbour>> neighbours(mesh.triangles.size());
-    for_each_edge(sides_of(mesh), [&](std::span<const Side> at) {
-        if (at.size() == 2) {
-            const bool is_opposed = at[0].is_turned == at[1].is_turned;
-            neighbours[at[0].triangle].push_back({at[1].triangle, is_opposed});
-            neighbours[at[1].triangle].push_back({at[0].triangle, is_opposed});
-        }
-    });
-    Flags is_known(mesh.triangles.size());
-    Flags turns(mesh.triangles.size());
-    std::vector<Index> next;  // a stack
-    for (Index first = 0; first < static_cast<Index>(mesh.triangles.size()); ++first) {
-        if (is_known[first] != 0) {
-            continue;
-        }
-        is_known[first] = 1;
-        next = {first};
-        while (!next.empty()) {
-            const Index t = next.back();
-            next.pop_back();
-            for (const auto& [neighbour, is_opposed] : neighbours[t]) {
-                if (is_known[neighbour] == 0) {
-                    is_known[neighbour] = 1;
-                    turns[neighbour] = turns[t] ^ static_cast<std::uint8_t>(is_opposed);
-                    next.push_back(neighbour);
-                }
-            }
-        }
-    }
-    for (std::size_t t = 0; t < turns.size(); ++t) {
-        if (turns[t] != 0) {
-            std::swap(mesh.triangles[t][1], mesh.triangles[t][2]);
+// Turns triangles so that each agrees with its neighbours in its sheet, whose first one stays.
+void turn_to_agree(TriangleMesh& mesh) {
+    const Orientation orientation =
+        orient(mesh.triangles, opposite_sides(sides_of_edges(mesh.triangles, mesh.vertices.size())));
+    std::vector<Index> first(static_cast<std::size_t>(orientation.components), kNone);
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        Index& stays = first[orientation.component[t]];
+        stays = stays == kNone ? static_cast<Index>(t) : stays;
+        if (orientation.is_reversed[t] != orientation.is_reversed[stays]) {
+            reverse(mesh.triangles[t]);
         }
     }
 }
@@ -494,32 +418,27 @@ void measure_sheets(Midsurface& surface, Index count) {
     for (MidsurfaceSheet& sheet : surface.sheets) {
         sheet.mean = sheet.area > 0.0 ? sheet.mean / sheet.area : sheet.min;
     }
-    std::vector<Index> order(surface.sheets.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater<>(), [&](Index s) { return surface.sheets[s].area; });
-    std::vector<MidsurfaceSheet> sorted;
-    std::vector<Index> numbers(order.size());
-    for (const Index s : order) {
-        numbers[s] = static_cast<Index>(sorted.size());
-        sorted.push_back(surface.sheets[s]);
-    }
-    surface.sheets = std::move(sorted);
+    const auto order = sorted_indices(
+        surface.sheets.size(), [&](Index s) { return surface.sheets[s].area; }, std::greater<>());
+    const std::vector<Index> numbers = places_in(order);
+    surface.sheets = each_of<MidsurfaceSheet>(order, [&](Index s) { return surface.sheets[s]; });
     std::ranges::for_each(surface.triangle_sheets, [&](Index& s) { s = numbers[s]; });
 }
 
 void measure_edges(Midsurface& surface) {
     const TriangleMesh& mesh = surface.mesh;
+    const IndexLists edges = sides_of_edges(mesh.triangles, mesh.vertices.size());
     std::vector<std::array<Index, 2>> seams;
-    for_each_edge(sides_of(mesh), [&](std::span<const Side> at) {
-        const auto& [a, b] = at.front().edge;
-        const double length = distance(mesh.vertices[a], mesh.vertices[b]);
-        if (at.size() == 1) {
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        const std::array<Index, 2> ends{start_of(mesh.triangles, edges[e][0]), end_of(mesh.triangles, edges[e][0])};
+        const double length = distance(mesh.vertices[ends[0]], mesh.vertices[ends[1]]);
+        if (edges[e].size() == 1) {
             surface.border_length += length;
-        } else if (at.size() > 2) {
+        } else if (edges[e].size() > 2) {
             surface.seam_length += length;
-            seams.push_back(at.front().edge);
+            seams.push_back(ends);
         }
-    });
+    }
     std::vector<std::vector<Index>> seams_at(mesh.vertices.size());
     for (std::size_t s = 0; s < seams.size(); ++s) {
         std::ranges::for_each(seams[s], [&](Index v) { seams_at[v].push_back(static_cast<Index>(s)); });
@@ -533,8 +452,8 @@ void measure_edges(Midsurface& surface) {
     }
 }
 
-Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options,
-                         const DistanceToBoundary& distance, const Execution& execution) {
+Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options, const DistanceInside& distance,
+                         const Execution& execution) {
     report(execution, kMidsurfaceStage, 0.0);
     const Flags cores = in_wide_parts(complex, between_sides(complex, options.angle));
     const MedialComplex walls = without_slivers(
@@ -543,9 +462,7 @@ Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& 
     report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;
     surface.mesh.vertices = walls.vertices;
-    for (const double radius : walls.radii) {
-        surface.thickness.push_back(2.0 * radius);
-    }
+    surface.thickness = each_of<double>(walls.radii, [](double radius) { return 2.0 * radius; });
     for (const FaceTriangle& triangle : face_triangles(walls)) {
         surface.mesh.triangles.push_back(triangle.corners);
         surface.triangle_sheets.push_back(walls.face_sheets[triangle.face]);
@@ -554,7 +471,7 @@ Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& 
         extend(surface, walls, distance);
     }
     report(execution, kMidsurfaceStage, 0.9);
-    orient(surface.mesh);
+    turn_to_agree(surface.mesh);
     measure_sheets(surface, walls.sheets);
     measure_edges(surface);
     for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
@@ -601,18 +518,14 @@ Midsurface midsurface(const MedialComplex& complex, const Solid& solid, const Mi
     }
     return in_arena(execution, [&] {
         check_options(complex, options);
-        return midsurface_of(
-            complex, options,
-            [&](const Point& p) { return (solid.inside(p) ? 1.0 : -1.0) * distance(p, *solid.nearest(p)); }, execution);
+        return midsurface_of(complex, options, distance_inside(solid), execution);
     });
 }
 
 MedialComplex complex_of(const Midsurface& surface) {
     MedialComplex complex;
     complex.vertices = surface.mesh.vertices;
-    for (const double thickness : surface.thickness) {
-        complex.radii.push_back(0.5 * thickness);
-    }
+    complex.radii = each_of<double>(surface.thickness, [](double thickness) { return 0.5 * thickness; });
     complex.vertex_origins.resize(complex.vertices.size());
     complex = with_linear_radii(std::move(complex));
     for (const std::array<Index, 3>& triangle : surface.mesh.triangles) {

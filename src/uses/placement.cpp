@@ -13,6 +13,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -28,17 +29,11 @@ double farthest(const Point& center, std::span<const Point> points) {
     return std::sqrt(square);
 }
 
-Point random_direction(std::uint64_t i, std::uint64_t k) {
-    const double z = 2.0 * random_unit(7, i, 2 * k) - 1.0;
-    const auto [cosine, sine] = on_circle(random_unit(7, i, 2 * k + 1));
-    const double across = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {across * cosine, across * sine, z};
-}
-
 // The inscribed ball for which the largest distance of the points to it is least, found by steps into several
 // directions that become shorter. A step stays in the ball that it starts from, and so in the solid.
 Ball fitted(Ball ball, std::span<const Point> points, const Solid& solid) {
     constexpr int kHalvings = 8;
+    constexpr std::uint64_t kSeed = 7;
     double error = farthest(ball.center, points) - ball.radius;
     const double first_step = 0.5 * std::min(ball.radius, std::max(error, 0.25 * ball.radius));
     double step = first_step;
@@ -50,8 +45,8 @@ Ball fitted(Ball ball, std::span<const Point> points, const Solid& solid) {
         if (!foot) {
             return ball;
         }
-        const Point a = random_direction(round, 0);
-        const Point b = unit(cross(a, random_direction(round, 1)));
+        const Point a = random_unit_vector(kSeed, round, 0);
+        const Point b = unit(cross(a, random_unit_vector(kSeed, round, 1)));
         const Point c = cross(a, b);
         const Point towards = unit(far - ball.center);
         const Point away = unit(ball.center - *foot);
@@ -213,10 +208,7 @@ std::vector<Index> by_need(const Placement& placement) {
         double& most = need[placement.nearest[i]];
         most = std::max(most, placement.otherwise[i]);
     }
-    std::vector<Index> order(need.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, {}, [&](Index k) { return need[k]; });
-    return order;
+    return sorted_indices(need.size(), [&](Index k) { return need[k]; });
 }
 
 std::vector<Ball> with_one_more(const Placement& placement, std::span<const Point> points,

@@ -27,6 +27,7 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "uses/curves/ways_out.hpp"
 
@@ -703,10 +704,7 @@ class Assembly {
         const MedialComplex& complex = burnt_.complex;
         for (std::size_t f = 0; f < complex.faces.size(); ++f) {
             if (remainder_.has_face[f] != 0) {
-                std::vector<Index> corners;
-                for (const Index v : complex.faces[f]) {
-                    corners.push_back(node_at(v));
-                }
+                const auto corners = each_of<Index>(complex.faces[f], [&](Index v) { return node_at(v); });
                 result_.faces.push_back(corners);
             }
         }
@@ -741,12 +739,7 @@ class Assembly {
         for (const auto& [a, b] : result_.edges) {
             sets.join(a, b);
         }
-        Index count = 0;
-        result_.node_components.resize(result_.nodes.size());
-        for (Index n = 0; n < static_cast<Index>(result_.nodes.size()); ++n) {
-            const Index first = sets.find(n);
-            result_.node_components[n] = first == n ? count++ : result_.node_components[first];
-        }
+        result_.node_components = sets.numbered().first;
     }
 
     void map_vertices() {
@@ -979,11 +972,8 @@ std::vector<Index> nearest_nodes(const Skeleton& skeleton, const MedialComplex& 
             nodes.push_back(skeleton.vertex_nodes[v]);
         }
     }
-    std::vector<Index> result;
-    for (const NearestBall& nearest : BallUnion(std::move(balls)).nearest_balls(points, execution)) {
-        result.push_back(nodes[nearest.ball]);
-    }
-    return result;
+    return each_of<Index>(BallUnion(std::move(balls)).nearest_balls(points, execution),
+                          [&](const NearestBall& nearest) { return nodes[nearest.ball]; });
 }
 
 }  // namespace scaleaxis::inline v1

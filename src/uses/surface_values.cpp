@@ -14,6 +14,7 @@
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/thickness.hpp"
 #include "spatial/mesh_parts.hpp"
@@ -38,12 +39,7 @@ void check_values(const TriangleMesh& mesh, std::span<const double> values) {
         throw UnusableInput("there are " + std::to_string(values.size()) + " values for " +
                             std::to_string(mesh.vertices.size()) + " vertices: one is needed for each");
     }
-    const auto count = static_cast<Index>(mesh.vertices.size());
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        if (std::ranges::any_of(triangle, [&](Index v) { return v < 0 || v >= count; })) {
-            throw UnusableInput("a triangle has a vertex that the mesh does not have");
-        }
-    }
+    check_triangles(mesh);
 }
 
 // The part of a triangle's area where a linear function is below a limit.
@@ -61,6 +57,15 @@ double part_below(std::array<double, 3> values, double limit) {
 }
 
 }  // namespace
+
+void check_triangles(const TriangleMesh& mesh) {
+    const auto count = static_cast<Index>(mesh.vertices.size());
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        if (std::ranges::any_of(triangle, [&](Index v) { return v < 0 || v >= count; })) {
+            throw UnusableInput("a triangle has a vertex that the mesh does not have");
+        }
+    }
+}
 
 void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::vector<Point>& points) {
     const auto first = static_cast<Index>(mesh.vertices.size());
@@ -82,6 +87,12 @@ void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::v
         }
     }
     mesh.triangles = std::move(triangles);
+}
+
+void halve(TriangleMesh& mesh, const std::vector<MeshEdge>& edges) {
+    divide(mesh, edges, each_of<Point>(edges, [&](const MeshEdge& edge) {
+               return midpoint(mesh.vertices[edge[0]], mesh.vertices[edge[1]]);
+           }));
 }
 
 SurfaceValues surface_values(const TriangleMesh& mesh, std::span<const double> values) {
@@ -167,18 +178,9 @@ ThinRegions thin_regions(const TriangleMesh& mesh, std::span<const double> value
                 part_below({values[triangle[0]], values[triangle[1]], values[triangle[2]]}, limit);
         }
     }
-    std::vector<Index> order(result.regions.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        order[i] = static_cast<Index>(i);
-    }
-    std::ranges::stable_sort(order, {}, [&](Index i) { return result.regions[i].min; });
-    std::vector<ThinRegion> sorted;
-    std::vector<Index> places(order.size());
-    for (const Index i : order) {
-        places[i] = static_cast<Index>(sorted.size());
-        sorted.push_back(result.regions[i]);
-    }
-    result.regions = std::move(sorted);
+    const auto order = sorted_indices(result.regions.size(), [&](Index i) { return result.regions[i].min; });
+    const std::vector<Index> places = places_in(order);
+    result.regions = each_of<ThinRegion>(order, [&](Index i) { return result.regions[i]; });
     for (Index& region : result.vertex_regions) {
         region = region == kNone ? kNone : places[region];
     }
@@ -222,7 +224,7 @@ std::optional<Diagnostic> unresolved_thickness(const TriangleMesh& surface, std:
 
 TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
     require(length > 0.0, "the length of edges must be positive");
-    check_values(mesh, std::vector<double>(mesh.vertices.size()));
+    check_triangles(mesh);
     while (true) {
         const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
             return squared_distance(mesh.vertices[a], mesh.vertices[b]) > length * length;
@@ -230,18 +232,14 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
         if (edges.empty()) {
             return mesh;
         }
-        std::vector<Point> middles;
-        for (const auto& [a, b] : edges) {
-            middles.push_back(midpoint(mesh.vertices[a], mesh.vertices[b]));
-        }
-        divide(mesh, edges, middles);
+        halve(mesh, edges);
         require(mesh.triangles.size() <= kMostTriangles,
                 "edges so short take more than 1e8 triangles: choose a larger length");
     }
 }
 
 TriangleMesh with_bulging_edges(TriangleMesh mesh, const Solid& solid, const Execution& execution) {
-    check_values(mesh, std::vector<double>(mesh.vertices.size()));
+    check_triangles(mesh);
     return in_arena(execution, [&] {
         std::vector<MeshEdge> edges = edges_of(mesh, [](Index, Index) { return true; });
         std::vector<Point> points(edges.size());

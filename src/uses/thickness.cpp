@@ -400,13 +400,7 @@ class BallPainter {
 class ThicknessData {
    public:
     ThicknessData(MedialComplex complex, double angle) : slope_(cosine_of_degrees(0.5 * angle)) {
-        Box box;
-        for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
-            const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
-            box.extend(complex.vertices[v] - r);
-            box.extend(complex.vertices[v] + r);
-        }
-        inflation_ = kInflation * box.diagonal();
+        inflation_ = kInflation * box_of_balls(complex).diagonal();
         const Slabs slabs = sorted_slabs(complex, angle);
         all_ = build_slab_tree(inflated(slabs.all, inflation_));
         if (angle > 0.0 && !slabs.between.empty()) {

@@ -22,6 +22,7 @@
 #include "base/bytes.hpp"
 #include "base/formats/json.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/view.hpp"
@@ -189,11 +190,7 @@ std::vector<double> thicknesses(const ViewedAxis& axis, const Curves& curves) {
         return a.sheet == b.sheet && a.vertex == b.vertex;
     });
     values.erase(repeated, values.end());
-    std::vector<double> result;
-    for (const Value& value : values) {
-        result.push_back(value.thickness);
-    }
-    return result;
+    return each_of<double>(values, &Value::thickness);
 }
 
 /// Lengths in steps of the largest finite one; the last step stands for infinity.
@@ -202,20 +199,17 @@ void add_thicknesses(Arrays& arrays, const std::vector<double>& thicknesses, Jso
     for (const double thickness : thicknesses) {
         largest = std::isfinite(thickness) ? std::max(largest, thickness) : largest;
     }
-    std::vector<std::uint32_t> steps;
-    for (const double thickness : thicknesses) {
-        steps.push_back(std::isfinite(thickness) ? quantized(thickness, largest, kCoarse - 1.0)
-                                                 : static_cast<std::uint32_t>(kCoarse));
-    }
+    const auto steps = each_of<std::uint32_t>(thicknesses, [&](double thickness) {
+        return std::isfinite(thickness) ? quantized(thickness, largest, kCoarse - 1.0)
+                                        : static_cast<std::uint32_t>(kCoarse);
+    });
     entry["largest_thickness"] = largest;
     entry["thicknesses"] = arrays.add_integers(steps);
 }
 
 Json add_axis(Arrays& arrays, const MedialComplex& complex, const Curves& curve_edges, const Box& box) {
-    std::vector<std::uint32_t> radii;
-    for (const double radius : complex.radii) {
-        radii.push_back(quantized(radius, box.diagonal(), kFine));
-    }
+    const auto radii =
+        each_of<std::uint32_t>(complex.radii, [&](double radius) { return quantized(radius, box.diagonal(), kFine); });
     std::vector<std::uint32_t> sizes;
     std::vector<std::uint32_t> angles;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
@@ -239,10 +233,9 @@ Json add_scales(Arrays& arrays, const std::optional<ViewedScales>& scales, const
     if (!scales) {
         return nullptr;
     }
-    Json levels = Json::array();
-    for (const FiltrationLevel& level : scales->levels) {
-        levels.push_back({level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume});
-    }
+    const Json levels = each_of<Json>(scales->levels, [&](const FiltrationLevel& level) {
+        return Json{level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume};
+    });
     const ScalePlateau& plateau = scales->plateau;
     return {{"vertices", arrays.add(scales->vertices, "f64")},
             {"faces", arrays.add(scales->faces, "f64")},
@@ -282,13 +275,11 @@ Json add_thickness(Arrays& arrays, const ViewedModel& model) {
         }
     }
     const auto steps = [&](const std::vector<double>& values) {
-        std::vector<std::uint32_t> result(values.size());
-        std::ranges::transform(values, result.begin(), [&](double x) { return quantized(x, largest, kCoarse); });
+        const auto result = each_of<std::uint32_t>(values, [&](double x) { return quantized(x, largest, kCoarse); });
         return arrays.add_integers(result);
     };
-    std::vector<std::uint32_t> regions(thickness.regions.size());
-    std::ranges::transform(thickness.regions, regions.begin(),
-                           [](Index region) { return static_cast<std::uint32_t>(region == kNone ? 0 : region + 1); });
+    const auto regions = each_of<std::uint32_t>(
+        thickness.regions, [](Index region) { return static_cast<std::uint32_t>(region == kNone ? 0 : region + 1); });
     return {{"largest", largest},
             {"local", steps(thickness.local)},
             {"foot", steps(thickness.foot)},
@@ -326,10 +317,7 @@ std::string data_of(const ViewedModel& model) {
         axes.push_back(&axis);
     }
     std::ranges::stable_sort(axes, {}, [](const ViewedAxis* axis) { return axis->complex.scale; });
-    std::vector<const MedialComplex*> complexes;
-    for (const ViewedAxis* axis : axes) {
-        complexes.push_back(&axis->complex);
-    }
+    const auto complexes = each_of<const MedialComplex*>(axes, [](const ViewedAxis* axis) { return &axis->complex; });
     const std::vector<std::vector<Index>> colors = view::sheet_colors(complexes);
     Arrays arrays;
     Json header{{"name", model.name},

@@ -11,6 +11,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/split_triangle.hpp"
 #include "axis/edit/triangulated.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -50,10 +51,7 @@ std::size_t Halving::count() const { return static_cast<std::size_t>(std::ranges
 
 Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options) {
     const auto [edges, faces] = asked_of(complex, options.asked_faces);
-    std::vector<Ball> balls;
-    for (const Index e : edges) {
-        balls.push_back(mean_ball(complex, complex.edges[e]));
-    }
+    auto balls = each_of<Ball>(edges, [&](Index e) { return mean_ball(complex, complex.edges[e]); });
     for (const Index f : faces) {
         balls.push_back(mean_ball(complex, complex.faces[f]));
     }

@@ -8,7 +8,7 @@
 #include "axis/complex.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
-#include "base/run_together.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -40,12 +40,8 @@ MedialComplex complex_of(const Remainder& remainder, const MedialComplex& comple
 }
 
 IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder) {
-    std::vector<Index> bare;
-    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
-        if (remainder.faces_at_edge[e].count == 0) {
-            bare.push_back(e);
-        }
-    }
+    const auto bare =
+        indices_where(complex.edges.size(), [&](Index e) { return remainder.faces_at_edge[e].count == 0; });
     DisjointSets chains(bare.size());
     for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
         for (const Index v : complex.edges[bare[i]]) {
@@ -56,15 +52,10 @@ IndexLists find_curves(const MedialComplex& complex, const Remainder& remainder)
             }
         }
     }
-    Index count = 0;
-    std::vector<Index> chain_of(bare.size());
-    for (Index i = 0; i < static_cast<Index>(bare.size()); ++i) {
-        const Index first = chains.find(i);
-        chain_of[i] = first == i ? count++ : chain_of[first];
-    }
-    return grouped(static_cast<std::size_t>(count), [&](const auto& add) {
+    const std::pair<std::vector<Index>, Index> chain_of = chains.numbered();
+    return grouped(static_cast<std::size_t>(chain_of.second), [&](const auto& add) {
         for (std::size_t i = 0; i < bare.size(); ++i) {
-            add(chain_of[i], bare[i]);
+            add(chain_of.first[i], bare[i]);
         }
     });
 }

@@ -18,6 +18,7 @@
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/cleaning.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -212,8 +213,7 @@ class Contraction {
                                      [&](Index cell) { return cell < static_cast<Index>(complex_.faces.size()); });
             }
         }
-        std::ranges::sort(result);
-        result.erase(std::unique(result.begin(), result.end()), result.end());
+        sort_unique(result);
         return result;
     }
 
@@ -315,8 +315,7 @@ class Contraction {
                 }
             }
         }
-        std::ranges::sort(result);
-        result.erase(std::unique(result.begin(), result.end()), result.end());
+        sort_unique(result);
         return result;
     }
 

@@ -22,6 +22,7 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/sharp_edges.hpp"
 #include "spatial/point_tree.hpp"
@@ -227,10 +228,8 @@ class Strips {
     // Triangles between a way and the places above it.
     std::vector<Triangle> strip_between(const std::vector<Index>& way, const EdgeLine& line) const {
         std::vector<Triangle> strip;
-        std::vector<double> positions;  // along the line
-        for (const Index v : way) {
-            positions.push_back(nearest_on(line.points, complex_.vertices[v]).second);
-        }
+        const auto positions =  // along the line
+            each_of<double>(way, [&](Index v) { return nearest_on(line.points, complex_.vertices[v]).second; });
         const std::size_t last = line.points.size() - 1;
         std::size_t k = 0;
         for (std::size_t i = 0; i + 1 < way.size() || k < last;) {
@@ -265,10 +264,7 @@ class Strips {
     // and the ball in the middle is in the solid.
     std::vector<std::uint8_t> are_valid(const std::vector<Triangle>& strip, const std::vector<Index>& way,
                                         const EdgeLine& line) const {
-        std::vector<Point> points;
-        for (const Index v : way) {
-            points.push_back(complex_.vertices[v]);
-        }
+        auto points = each_of<Point>(way, [&](Index v) { return complex_.vertices[v]; });
         for (const Triangle& triangle : strip) {
             const auto& [a, b, c] = triangle;
             points.push_back((1.0 / 3.0) * (at(a, line) + at(b, line) + at(c, line)));

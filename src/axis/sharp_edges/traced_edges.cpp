@@ -17,6 +17,7 @@
 #include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "spatial/point_tree.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -92,10 +93,7 @@ class Tracing {
     // Joins ends with the nearest places ahead, those of other ends or corners.
     void link(double reach) {
         const double sight = kLinkReach * options_.tolerance;
-        std::vector<Point> places;
-        for (const Node& node : nodes_) {
-            places.push_back(node.crease.place);
-        }
+        const auto places = each_of<Point>(nodes_, [&](const Node& node) { return node.crease.place; });
         const PointTree tree = build_point_tree(places);
         std::vector<std::tuple<double, Index, int, Index, int>> links;  // distance, place and side of both
         for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {

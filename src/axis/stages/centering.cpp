@@ -24,6 +24,7 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/fit.hpp"
 #include "spatial/slab.hpp"
@@ -130,11 +131,7 @@ void add_direction(std::vector<Point>& directions, const Point& direction) {
 }
 
 void add_circle(std::vector<Point>& directions, const Point& tangent) {
-    const double x = std::abs(tangent.x);
-    const double y = std::abs(tangent.y);
-    const double z = std::abs(tangent.z);
-    const Point least = x <= y && x <= z ? Point{1, 0, 0} : y <= z ? Point{0, 1, 0} : Point{0, 0, 1};
-    const Point u = unit(cross(tangent, least));
+    const Point u = any_normal_to(tangent);
     const Point v = cross(tangent, u);
     for (int i = 0; i < kDirectionsOfCurve; ++i) {
         const auto [cosine, sine] = on_circle(static_cast<double>(i) / kDirectionsOfCurve);
@@ -512,15 +509,10 @@ Touching touching_balls(const MedialComplex& complex, std::span<const Index> ver
     const ContactDirections directions(complex);
     const std::vector<FirstContact> contacts = first_contacts(complex, vertices, solid, tolerance);
     // Questions about places near to each other are answered faster one after the other.
-    std::vector<Point> centers;
-    for (const FirstContact& contact : contacts) {
-        centers.push_back(complex.vertices[contact.vertex]);
-    }
+    const auto centers =
+        each_of<Point>(contacts, [&](const FirstContact& contact) { return complex.vertices[contact.vertex]; });
     const std::vector<Index> order = hilbert_order(centers);
-    std::vector<FirstContact> ordered;
-    for (const Index i : order) {
-        ordered.push_back(contacts[i]);
-    }
+    const auto ordered = each_of<FirstContact>(order, [&](Index i) { return contacts[i]; });
     std::vector<Touching> blocks = collect_blocks<Touching>(
         solid, ordered.size(), kBlocksOfProgress,
         [&](std::size_t begin, std::size_t end, Touching& out) {
@@ -681,12 +673,8 @@ Touching touching_balls_of_all(const MedialComplex& complex, const Solid& solid,
     require(options.tolerance > 0.0 && std::isfinite(options.tolerance),
             "the tolerance of centering must be a positive number");
     check_knows_nearest(solid);
-    std::vector<Index> vertices;
-    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-        if (!is_on_sharp_edge(complex, v)) {
-            vertices.push_back(v);
-        }
-    }
+    const auto vertices =
+        indices_where(complex.vertices.size(), [&](Index v) { return !is_on_sharp_edge(complex, v); });
     return touching_balls(complex, vertices, solid, options.tolerance, feet, execution);
 }
 

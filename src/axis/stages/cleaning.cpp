@@ -23,7 +23,6 @@
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
 #include "spatial/ball_tree.hpp"
 
 namespace scaleaxis::inline v1 {

@@ -18,7 +18,6 @@
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
-#include "base/run_together.hpp"
 #include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis::inline v1 {

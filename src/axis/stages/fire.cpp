@@ -13,6 +13,7 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/cleaning.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -446,10 +447,7 @@ ErosionThickness erosion_thickness(const MedialComplex& complex, const Execution
         const Sectors sectors = sectors_of(complex, sides);
         Fire fire = burn(complex, complex.radii, sides, sectors);
         ErosionThickness result;
-        result.corner_burn_times.reserve(sectors.of_corner.size());
-        for (const Index s : sectors.of_corner) {
-            result.corner_burn_times.push_back(fire.sector_times[s]);
-        }
+        result.corner_burn_times = each_of<double>(sectors.of_corner, [&](Index s) { return fire.sector_times[s]; });
         for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
             result.thickness.push_back(fire.vertex_times[v] - complex.radii[v]);
         }

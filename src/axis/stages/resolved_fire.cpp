@@ -11,6 +11,7 @@
 #include "axis/edit/halving.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -106,9 +107,7 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
 
 BurntComplex burnt_complex(MedialComplex complex) {
     BurntComplex result{std::move(complex), {}, {}, {}, {}};
-    for (const double radius : result.complex.radii) {
-        result.radii.push_back(result.complex.scale * radius);
-    }
+    result.radii = each_of<double>(result.complex.radii, [&](double radius) { return result.complex.scale * radius; });
     result.sides = sides_of(result.complex);
     result.sectors = sectors_of(result.complex, result.sides);
     result.fire = burn(result.complex, result.radii, result.sides, result.sectors);

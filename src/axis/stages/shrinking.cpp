@@ -110,10 +110,9 @@ bool is_too_coarse(const MedialComplex& complex, std::span<const Index> polygon,
 // For every face, whether it has to be split.
 template <class Criterion>
 std::vector<std::uint8_t> find_coarse_faces(const MedialComplex& complex, const Criterion& criterion) {
-    std::vector<std::uint8_t> is_coarse(complex.faces.size());
-    for_each_index(is_coarse.size(),
-                   [&](std::size_t f) { is_coarse[f] = is_too_coarse(complex, complex.faces[f], criterion) ? 1 : 0; });
-    return is_coarse;
+    return mapped<std::uint8_t>(complex.faces.size(), [&](std::size_t f) {
+        return is_too_coarse(complex, complex.faces[f], criterion) ? 1 : 0;
+    });
 }
 
 // Counts the vertices that the finer complex will have, without making it, up to a limit.

@@ -22,6 +22,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "spatial/extent.hpp"
 
@@ -182,8 +183,7 @@ class Collapser {
             simplices_[stars_[v].front()].witnesses.push_back(static_cast<Index>(v));
         }
         add_balls_between(step(options.error.value_or(0.0)));
-        ranks_.resize(balls_.size());
-        for_each_index(balls_.size(), [&](std::size_t v) { ranks_[v] = rank_of(static_cast<Index>(v)); });
+        ranks_ = mapped<Rank>(static_cast<Index>(balls_.size()), [&](Index v) { return rank_of(v); });
         for (const Index v : options.anchors) {
             ranks_[v] = Rank::kCorner;
         }
@@ -308,8 +308,7 @@ class Collapser {
                 }
             }
         }
-        std::ranges::sort(result);
-        result.erase(std::unique(result.begin(), result.end()), result.end());
+        sort_unique(result);
         return result;
     }
 
@@ -595,8 +594,7 @@ class Collapser {
                 }
             }
         }
-        std::ranges::sort(ends);
-        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        sort_unique(ends);
         return ends;
     }
 
@@ -689,9 +687,8 @@ double collapse(Collapser& collapser, const SimplifyOptions& options, const Exec
 // The largest of `value(i)` for `0 ≤ i < count`, in parallel.
 template <class Value>
 double largest(std::size_t count, const Value& value) {
-    std::vector<double> values(count);
-    for_each_index(
-        count, [&](std::size_t i) { values[i] = value(i); }, std::size_t{16});
+    const auto values = mapped<double>(
+        count, [&](std::size_t i) { return value(i); }, std::size_t{16});
     return values.empty() ? 0.0 : std::max(0.0, *std::ranges::max_element(values));
 }
 

@@ -152,8 +152,8 @@ void try_patch(const UnionBoundary& boundary, Index patch, const Point& p, NearB
 UnionBoundary union_boundary(const UnionComplex& complex, const UnionAdjacency& adjacency) {
     UnionBoundary boundary{complex, adjacency, {}, {}, {}, {}};
     const std::vector<Index>& visible = adjacency.visible;
-    std::vector<FoundPatch> found(visible.size());
-    for_each_index(visible.size(), [&](std::size_t i) { found[i] = find_patch(boundary, visible[i]); });
+    const auto found =
+        mapped<FoundPatch>(visible.size(), [&](std::size_t i) { return find_patch(boundary, visible[i]); });
     std::vector<Index> with_patch;
     std::vector<Box> boxes;
     for (std::size_t i = 0; i < found.size(); ++i) {

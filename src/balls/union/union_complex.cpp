@@ -7,6 +7,7 @@
 
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "delaunay/tetrahedron.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -81,10 +82,7 @@ void check_union(std::span<const Ball> balls) {
 UnionComplex union_complex(std::span<const Ball> balls) {
     UnionComplex complex;
     complex.given = distinct_positions(balls);
-    std::vector<Ball> distinct;
-    for (const Index i : complex.given) {
-        distinct.push_back(balls[i]);
-    }
+    const auto distinct = each_of<Ball>(complex.given, [&](Index i) { return balls[i]; });
     if (distinct.size() == balls.size()) {
         complex.given.clear();
     }

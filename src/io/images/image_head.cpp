@@ -7,6 +7,7 @@
 
 #include "base/faults.hpp"
 #include "base/files.hpp"
+#include "base/vectors.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {
@@ -71,11 +72,9 @@ std::int64_t HeadField::integer(std::int64_t least, std::int64_t most) const {
 }
 
 std::vector<std::int64_t> HeadField::sizes(std::size_t count) const {
-    std::vector<std::int64_t> result;
-    for (const std::string_view word : words(count)) {
-        result.push_back(HeadField{name, word, line}.integer(1));
-    }
-    return result;
+    return each_of<std::int64_t>(words(count), [&](std::string_view word) {
+        return HeadField{name, word, line}.integer(1);
+    });
 }
 
 std::vector<double> HeadField::numbers(const std::vector<std::string_view>& words, bool may_be_absent) const {

@@ -12,6 +12,7 @@
 
 #include "base/faults.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "io/formats.hpp"
 #include "io/images/image_head.hpp"
 #include "io/images/stored_image.hpp"
@@ -181,11 +182,9 @@ std::vector<Segment> segments_of(const ImageHead& head) {
 }
 
 std::vector<LabelName> names_of(const std::vector<Segment>& segments) {
-    std::vector<LabelName> names;
-    for (const Segment& segment : segments) {
-        names.push_back({static_cast<float>(segment.label), segment.name});
-    }
-    return names;
+    return each_of<LabelName>(segments, [&](const Segment& segment) {
+        return LabelName{static_cast<float>(segment.label), segment.name};
+    });
 }
 
 /// An image with the layers of each voxel after each other becomes one with segments numbered from 1.

@@ -17,6 +17,7 @@
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
 #include "base/formats/json.hpp"
+#include "base/vectors.hpp"
 #include "io/colors.hpp"
 #include "io/formats.hpp"
 
@@ -225,10 +226,8 @@ void write_glb_surface(OutputFile& out, const TriangleMesh& mesh, std::span<cons
         std::string name = "_";
         std::ranges::transform(attribute.name, std::back_inserter(name),
                                [](unsigned char c) { return static_cast<char>(std::toupper(c)); });
-        std::vector<float> numbers;
-        for (const double value : attribute.values) {
-            numbers.push_back(static_cast<float>(finite_or_minus_one(value)));
-        }
+        const auto numbers = each_of<float>(
+            attribute.values, [&](double value) { return static_cast<float>(finite_or_minus_one(value)); });
         attributes[name] = arrays.add(numbers, "SCALAR", 1);
     }
     std::vector<Index> corners;

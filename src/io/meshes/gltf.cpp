@@ -22,6 +22,7 @@
 #include "base/files.hpp"
 #include "base/formats/base64.hpp"
 #include "base/formats/json.hpp"
+#include "base/vectors.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
 #include "io/meshes/placement.hpp"
@@ -87,11 +88,8 @@ std::vector<Element> list(const Element& element, const char* key) {
 }
 
 std::vector<std::uint64_t> integers(const Element& element, const char* key) {
-    std::vector<std::uint64_t> result;
-    for (const Element& item : list(element, key)) {
-        result.push_back(whole_number(item.json, element, key));
-    }
-    return result;
+    return each_of<std::uint64_t>(list(element, key),
+                                  [&](const Element& item) { return whole_number(item.json, element, key); });
 }
 
 /// `count` numbers; `otherwise` if there are none.

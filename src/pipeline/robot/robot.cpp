@@ -16,6 +16,7 @@
 #include "base/angles.hpp"
 #include "base/faults.hpp"
 #include "base/formats/xml.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 
@@ -374,9 +375,7 @@ Robot::Robot(const std::string& text, const fs::path& file, const RobotOptions& 
     content_->name = robot.attribute("name").as_string(file.stem().string().c_str());
     content_->file = file;
     content_->mounts = mounts_of(robot, file.string(), options.rest);
-    for (const Mount& mount : content_->mounts) {
-        content_->joints.push_back(mount.joint);
-    }
+    content_->joints = each_of<RobotJoint>(content_->mounts, &Mount::joint);
     for (const xml_node& link : robot.children("link")) {
         const std::string& name = content_->names.emplace_back(attribute(link, "name"));
         if (content_->base.empty() && content_->mount_of_link(name) == nullptr) {

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/angles.hpp"
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
@@ -63,14 +64,6 @@ double agreement(double cosine) {
 double weight(double squared_distance, double squared_radius) {
     const double x = std::max(0.0, 1.0 - squared_distance / squared_radius);
     return x * x * x * x;
-}
-
-/// Two unit vectors at right angles to a third one and to each other.
-std::pair<Point, Point> tangents(const Point& normal) {
-    const Point other = std::abs(normal.x) < 0.6 ? Point{1.0, 0.0, 0.0} : Point{0.0, 1.0, 0.0};
-    const Point u = cross(normal, other);
-    const Point unit = (1.0 / norm(u)) * u;
-    return {unit, cross(normal, unit)};
 }
 
 /// The axes, and the diagonals of the faces of a cube and of the cube.
@@ -271,11 +264,11 @@ class MovingLeastSquares final : public PointwiseSolid {
         const Point center = midpoint(hull_.box.min, hull_.box.max);
         const double side = hull_.box.diagonal() / kSquares;
         for (std::size_t k = 0; k < hull_.directions.size(); ++k) {
-            const std::pair<Point, Point> tangent = tangents(hull_.directions[k]);
+            const std::array<Point, 2> tangents = across(hull_.directions[k]);
             for (const double height : {hull_.min[k], hull_.max[k]}) {
                 const Point origin = center + (height - dot(hull_.directions[k], center)) * hull_.directions[k];
                 const auto at = [&](double x, double y) {
-                    return origin + (x * side) * tangent.first + (y * side) * tangent.second;
+                    return origin + (x * side) * tangents[0] + (y * side) * tangents[1];
                 };
                 append(result, collect<std::vector<Point>>(
                                    kSquares * kSquares,
@@ -432,7 +425,7 @@ class MovingLeastSquares final : public PointwiseSolid {
 
     /// A random point of the square that point `i` has for itself in the tangent plane, and a little more.
     Point scattered(std::size_t i, std::uint64_t seed, std::uint64_t k) const {
-        const auto [u, v] = tangents(planes_[i].normal);
+        const auto [u, v] = across(planes_[i].normal);
         const double side = 1.5 * spacings_[i];
         const double x = side * (random_unit(seed, i, 2 * k) - 0.5);
         const double y = side * (random_unit(seed, i, 2 * k + 1) - 0.5);

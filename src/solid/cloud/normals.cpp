@@ -16,6 +16,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -134,28 +135,18 @@ IndexLists connected_parts(const PointTree& tree, std::span<const Point> points,
             sets.join(static_cast<Index>(i), tree.order[other.position]);
         }
     }
-    std::vector<Index> part_of_set(points.size(), kNone);
-    std::vector<std::vector<Index>> parts;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        Index& part = part_of_set[sets.find(static_cast<Index>(i))];
-        if (part == kNone) {
-            part = static_cast<Index>(parts.size());
-            parts.emplace_back();
+    const std::pair<std::vector<Index>, Index> part_of = sets.numbered();
+    return grouped(static_cast<std::size_t>(part_of.second), [&](const auto& add) {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            add(part_of.first[i], static_cast<Index>(i));
         }
-        parts[part].push_back(static_cast<Index>(i));
-    }
-    IndexLists result;
-    for (const std::vector<Index>& part : parts) {
-        result.push_back(part);
-    }
-    return result;
+    });
 }
 
 void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
                          std::vector<Point>& normals) {
     const auto size = static_cast<Index>(part.size());
-    std::vector<Point> places(part.size());
-    std::ranges::transform(part, places.begin(), [&](Index i) { return points[i]; });
+    const auto places = each_of<Point>(part, [&](Index i) { return points[i]; });
     const PointTree tree = build_point_tree(places);
     std::vector<std::array<Index, 2>> edges;
     std::vector<NearPoint> near;

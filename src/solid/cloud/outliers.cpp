@@ -9,6 +9,7 @@
 
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "solid/cloud/normals.hpp"
 #include "spatial/point_tree.hpp"
 
@@ -50,16 +51,14 @@ double spacing_of(const std::vector<NearPoint>& near) {
 
 /// The spacing of the tree's points at other points, each of which is one of them.
 std::vector<double> spacings_at(const std::vector<Point>& points, const PointTree& tree) {
-    std::vector<double> result(points.size());
-    for_each_index(
+    return mapped<double>(
         points.size(),
         [&](std::size_t i) {
             static thread_local std::vector<NearPoint> near;
             nearest_points(tree, points[i], kDensityNeighbors + 1, near);
-            result[i] = spacing_of(near);
+            return spacing_of(near);
         },
         std::size_t{256});
-    return result;
 }
 
 /// Values by position in the tree. \param values as the points were given
@@ -81,8 +80,7 @@ double typical_spacing(const std::vector<NearPoint>& near, const std::vector<dou
 std::vector<std::uint8_t> find_suspects(const PointTree& tree, const std::vector<double>& spacings,
                                         const std::vector<double>& given_spacings, std::size_t neighbors) {
     const double thinnest = kThinnest * median(given_spacings);
-    std::vector<std::uint8_t> is_suspect(spacings.size());
-    for_each_index(
+    return mapped<std::uint8_t>(
         spacings.size(),
         [&](std::size_t i) {
             static thread_local std::vector<NearPoint> near;
@@ -90,10 +88,9 @@ std::vector<std::uint8_t> find_suspects(const PointTree& tree, const std::vector
             const bool is_thin = given_spacings[i] > kThin * typical_spacing(near, given_spacings);
             const bool is_thinnest = given_spacings[i] > thinnest && fit.residual > kThick * fit.radius;
             const bool is_off = fit.height > kHeight * spacings[i] && fit.height > kStrayed * fit.others_residual;
-            is_suspect[i] = is_thin || is_thinnest || is_off ? 1 : 0;
+            return is_thin || is_thinnest || is_off ? 1 : 0;
         },
         std::size_t{64});
-    return is_suspect;
 }
 
 /// What the points above suspicion say.
@@ -144,11 +141,7 @@ std::vector<std::uint8_t> find_far_points(std::span<const Point> points) {
     if (points.size() <= kDensityNeighbors) {
         return result;
     }
-    const auto typical = [&](const auto& value) {
-        std::vector<double> values(points.size());
-        std::ranges::transform(points, values.begin(), value);
-        return median(std::move(values));
-    };
+    const auto typical = [&](const auto& value) { return median(each_of<double>(points, value)); };
     const Point center{typical(&Point::x), typical(&Point::y), typical(&Point::z)};
     const auto from_center = [&](const Point& p) { return distance(p, center); };
     const double far = kFarthest * typical(from_center);

@@ -17,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
 #include "solid/cloud/normals.hpp"
@@ -97,23 +98,14 @@ std::vector<double> spacings(const PointTree& tree, const std::vector<Point>& po
     return result;
 }
 
-template <class T>
-void remove_marked(std::vector<T>& items, const std::vector<std::uint8_t>& is_marked) {
-    std::size_t i = 0;
-    std::erase_if(items, [&](const T&) { return is_marked[i++] != 0; });
-}
-
 std::vector<LocalFit> local_fits(const PointTree& tree, const std::vector<Point>& points, std::size_t step,
                                  std::size_t neighbors) {
-    std::vector<LocalFit> fits((points.size() + step - 1) / step);
-    for_each_index(
-        fits.size(),
-        [&](std::size_t i) {
-            static thread_local std::vector<NearPoint> memory;
-            fits[i] = fit_locally(tree, points[i * step], neighbors, memory);
-        },
-        std::size_t{64});
-    return fits;
+    return mapped<LocalFit>((points.size() + step - 1) / step,
+                            [&](std::size_t i) {
+                                static thread_local std::vector<NearPoint> memory;
+                                return fit_locally(tree, points[i * step], neighbors, memory);
+                            },
+                            std::size_t{64});
 }
 
 /// The fewest neighbours among which noise does not hide the surface.
@@ -125,10 +117,8 @@ std::size_t fit_neighbors(const PointTree& tree, const std::vector<Point>& point
         if (neighbors * 4 > points.size() && neighbors > kFitNeighbors[0]) {
             break;
         }
-        std::vector<double> thickness;
-        for (const LocalFit& fit : local_fits(tree, points, step, std::min(neighbors, points.size() - 1))) {
-            thickness.push_back(fit.residual / fit.radius);
-        }
+        const auto thickness = each_of<double>(local_fits(tree, points, step, std::min(neighbors, points.size() - 1)),
+                                               [&](const LocalFit& fit) { return fit.residual / fit.radius; });
         const double typical = median(thickness);
         if (typical < thinnest) {
             thinnest = typical;
@@ -144,27 +134,19 @@ std::size_t fit_neighbors(const PointTree& tree, const std::vector<Point>& point
 /// The points that have others on one side only.
 std::vector<Index> find_border(const PointTree& tree, const std::vector<Point>& points,
                                const std::vector<LocalFit>& fits, std::size_t neighbors) {
-    std::vector<std::uint8_t> is_on_border(points.size());
-    for_each_index(
+    const auto is_on_border = mapped<std::uint8_t>(
         points.size(),
         [&](std::size_t i) {
             static thread_local std::vector<NearPoint> memory;
-            is_on_border[i] = largest_gap(tree, points[i], fits[i].normal, neighbors, memory) > kBorderGap ? 1 : 0;
+            return largest_gap(tree, points[i], fits[i].normal, neighbors, memory) > kBorderGap ? 1 : 0;
         },
         std::size_t{64});
-    std::vector<Index> border;
-    for (std::size_t i = 0; i < points.size(); ++i) {
-        if (is_on_border[i] != 0) {
-            border.push_back(static_cast<Index>(i));
-        }
-    }
-    return border;
+    return indices_where(points.size(), [&](Index i) { return is_on_border[i] != 0; });
 }
 
 /// Groups of border points that are close together; few of them are chance. The widest first.
 std::vector<CloudHole> find_holes(const PreparedCloud& cloud, std::span<const Index> border) {
-    std::vector<Point> rims(border.size());
-    std::ranges::transform(border, rims.begin(), [&](Index i) { return cloud.cloud.points[i]; });
+    const auto rims = each_of<Point>(border, [&](Index i) { return cloud.cloud.points[i]; });
     if (rims.empty()) {
         return {};
     }
@@ -324,15 +306,14 @@ void merge_duplicates(PointCloud& cloud, CloudReport& report) {
 }
 
 void remove_marked(PointCloud& cloud, const std::vector<std::uint8_t>& is_marked) {
-    remove_marked(cloud.points, is_marked);
+    erase_marked(cloud.points, is_marked);
     if (!cloud.normals.empty()) {
-        remove_marked(cloud.normals, is_marked);
+        erase_marked(cloud.normals, is_marked);
     }
 }
 
 void remove_not_finite(PointCloud& cloud, CloudReport& report) {
-    std::vector<std::uint8_t> is_bad(cloud.points.size());
-    std::ranges::transform(cloud.points, is_bad.begin(), [](const Point& p) { return is_usable(p) ? 0 : 1; });
+    const auto is_bad = each_of<std::uint8_t>(cloud.points, [](const Point& p) { return is_usable(p) ? 0 : 1; });
     report.not_finite = static_cast<Index>(std::ranges::count(is_bad, 1));
     if (report.not_finite > 0) {
         remove_marked(cloud, is_bad);

@@ -18,6 +18,7 @@
 #include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/solid.hpp"
@@ -177,11 +178,8 @@ class FunctionSolid final : public Solid, public NearestPoints {
     }
 
     void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
-        std::vector<Inquiry<std::optional<Point>>> inquiries;
-        inquiries.reserve(chords.size());
-        for (const Chord& chord : chords) {
-            inquiries.push_back(crossing_of(chord));
-        }
+        auto inquiries =
+            each_of<Inquiry<std::optional<Point>>>(chords, [&](const Chord& chord) { return crossing_of(chord); });
         answer(inquiries);
         std::ranges::transform(inquiries, points.begin(), [](auto& inquiry) { return inquiry.result(); });
     }

@@ -20,6 +20,7 @@
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "solid/image/canonical_image.hpp"
@@ -54,11 +55,7 @@ std::vector<float> gaussian_weights(double width) {
         weights.push_back(exponential(-0.5 * i * i / (width * width)));
         sum += 2.0 * weights.back();
     }
-    std::vector<float> result;
-    for (const double weight : weights) {
-        result.push_back(static_cast<float>(weight / sum));
-    }
-    return result;
+    return each_of<float>(weights, [&](double weight) { return static_cast<float>(weight / sum); });
 }
 
 /// Convolves rows of `length` values along one axis, many at a time: `count` values beside each other, `stride` apart

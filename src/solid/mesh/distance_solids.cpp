@@ -10,6 +10,7 @@
 #include "base/faults.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "solid/mesh/fast_winding.hpp"

@@ -252,10 +252,9 @@ class MeshSolid final : public PointwiseSolid {
         const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
         const std::vector<Index>& opposite =
             opposite_.get([&] { return opposite_sides(sides_of_edges(triangles, points.size())); });
-        std::vector<Point> normals(triangles.size());
-        for_each_index(triangles.size(), [&](std::size_t t) {
+        const auto normals = mapped<Point>(triangles.size(), [&](std::size_t t) {
             const auto& [u, v, w] = triangles[t];
-            normals[t] = unit(cross(points[v] - points[u], points[w] - points[u]));
+            return unit(cross(points[v] - points[u], points[w] - points[u]));
         });
         std::vector<SharpEdge> edges;
         for (Index side = 0; side < static_cast<Index>(opposite.size()); ++side) {

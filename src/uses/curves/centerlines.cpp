@@ -17,6 +17,7 @@
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/text.hpp"
+#include "base/vectors.hpp"
 #include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -459,9 +460,7 @@ Skeleton resampled(const Skeleton& skeleton, double step) {
         std::ranges::transform(face, face.begin(), [&](Index n) { return moved[n]; });
         result.faces.push_back(face);
     }
-    for (const Index n : skeleton.vertex_nodes) {
-        result.vertex_nodes.push_back(moved[n]);
-    }
+    result.vertex_nodes = each_of<Index>(skeleton.vertex_nodes, [&](Index n) { return moved[n]; });
     result.root = skeleton.root == kNone ? kNone : moved[skeleton.root];
     return result;
 }

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/skeleton.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -65,12 +66,7 @@ IndexLists with_prolongations(const IndexLists& branches, const std::vector<Prol
 Skeleton led_to_openings(Skeleton skeleton, std::span<const Hole> holes, double spacing) {
     require(spacing >= 0.0, "the spacing of nodes must not be negative");
     const std::vector<Index> degree = branch_degrees(skeleton);
-    std::vector<Index> ends;
-    for (Index n = 0; n < static_cast<Index>(degree.size()); ++n) {
-        if (degree[n] == 1) {
-            ends.push_back(n);
-        }
-    }
+    auto ends = indices_where(degree.size(), [&](Index n) { return degree[n] == 1; });
     std::vector<Prolongation> prolongations;
     for (const Hole& hole : holes) {
         const auto way_of = [&](Index end) { return distance(skeleton.nodes[end], hole.center); };

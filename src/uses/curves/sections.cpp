@@ -52,9 +52,7 @@ Section section_at(const Solid& solid, const Point& p, const Point& tangent, dou
 }  // namespace
 
 std::array<Point, 2> normals_to(const Point& direction) {
-    const auto [x, y, z] = std::array{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
-    const Point other = x <= y && x <= z ? Point{1, 0, 0} : y <= z ? Point{0, 1, 0} : Point{0, 0, 1};
-    const Point first = unit(cross(direction, other));
+    const Point first = any_normal_to(direction);
     return {first, unit(cross(direction, first))};
 }
 

@@ -10,6 +10,7 @@
 
 #include "base/angles.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -177,8 +178,7 @@ class WallRemesher {
                 ends.push_back({a, b});
             }
         }
-        std::ranges::sort(ends);
-        ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+        sort_unique(ends);
         std::vector<Edge> result;
         for (const auto& [a, b] : ends) {
             result.emplace_back(distance(vertices_[a], vertices_[b]), a, b);
@@ -251,8 +251,7 @@ class WallRemesher {
             }
         }
         for (std::vector<Index>* list : {&result.walls, &result.rims}) {
-            std::ranges::sort(*list);
-            list->erase(std::unique(list->begin(), list->end()), list->end());
+            sort_unique(*list);
         }
         return result;
     }
@@ -407,10 +406,7 @@ class WallRemesher {
             }
         }
         const std::vector<Index> at = triangles_at(a, b);
-        std::vector<Index> apexes;
-        for (const Index t : at) {
-            apexes.push_back(apex(t, a, b));
-        }
+        auto apexes = each_of<Index>(at, [&](Index t) { return apex(t, a, b); });
         std::ranges::sort(apexes);
         if (std::ranges::adjacent_find(apexes) != apexes.end() || common != apexes.size()) {
             return false;
@@ -551,11 +547,8 @@ WallMesh remeshed(const WallMesh& input, double size, double farthest, const Wal
 
 std::vector<VertexWalls> walls_of_vertices(const WallMesh& mesh, const WallShapes& shapes) {
     const WallRemesher remesher(mesh, 1.0, shapes);
-    std::vector<VertexWalls> result;
-    for (Index v = 0; v < static_cast<Index>(remesher.vertex_count()); ++v) {
-        result.push_back(remesher.walls_of(v));
-    }
-    return result;
+    return mapped<VertexWalls>(static_cast<Index>(remesher.vertex_count()),
+                               [&](Index v) { return remesher.walls_of(v); });
 }
 
 }  // namespace scaleaxis::inline v1

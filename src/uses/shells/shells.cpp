@@ -21,11 +21,13 @@
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/mesh_parts.hpp"
 #include "spatial/nearest_triangle.hpp"
 #include "spatial/point_tree.hpp"
 #include "uses/ascent.hpp"
+#include "uses/boundary_ahead.hpp"
 #include "uses/shells/remeshing.hpp"
 #include "uses/wide_parts.hpp"
 
@@ -47,8 +49,6 @@ constexpr double kEvenness = 0.02;    // of the thickness: half the accuracy of 
 constexpr double kEvenPart = 0.95;    // of the area that is so near to the mean
 constexpr double kNormalReach = 0.5;  // of the thickness: normals of curved walls are means over it
 constexpr double kRimReach = 2.0;     // of the radius: a rim of 45 degrees is at √2
-constexpr double kRimReached = 1e-4;
-constexpr int kMostRimSteps = 20;
 constexpr double kRimDepth = 0.2;     // of the radius: so far inside the nearest side of the solid is the rim
 constexpr double kLeastFacing = 0.4;  // cosine of the steepest slope of a rim, which is no side of the wall then
 constexpr double kRimGap = 0.75;      // of the thickness: the rim goes on so far away
@@ -58,7 +58,6 @@ constexpr double kLeastRim = 0.5;     // of the thickness: shorter rims are erro
 constexpr double kLeastSlant = 0.05;
 
 using TriangleFlags = std::vector<std::uint8_t>;
-using DistanceInside = std::function<double(const Point&)>;
 
 struct Topside {
     Point place;
@@ -105,8 +104,7 @@ TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbo
         }
     }
     const IndexLists at = grouped_both_ways(places.size(), edges);
-    std::ranges::sort(seam);
-    seam.erase(std::unique(seam.begin(), seam.end()), seam.end());
+    sort_unique(seam);
     std::vector<Index> last(places.size(), kNone);  // seam vertex from which it was reached
     std::vector<Index> next;
     for (const Index start : seam) {
@@ -378,19 +376,6 @@ struct RimSample {
     Point normal;
 };
 
-std::optional<Point> boundary_ahead(const Point& from, const Point& direction, double radius,
-                                    const DistanceInside& distance) {
-    double way = 0.0;
-    for (int step = 0; step < kMostRimSteps && way <= kRimReach * radius; ++step) {
-        const double left = distance(from + way * direction);
-        way += left;
-        if (left <= kRimReached * radius) {
-            return from + way * direction;
-        }
-    }
-    return std::nullopt;
-}
-
 std::vector<RimSample> rim_samples(const TriangleMesh& mesh, const std::vector<Index>& walls,
                                    const std::vector<WallMiddle>& middles, const Neighbourhood& neighbours,
                                    const DistanceInside& distance_inside) {
@@ -409,15 +394,15 @@ std::vector<RimSample> rim_samples(const TriangleMesh& mesh, const std::vector<I
             const Point direction = unit(cross(b - a, middle.normal));
             sample.thickness = middle.thickness;
             const double radius = 0.5 * middle.thickness;
-            const std::optional<Point> hit = boundary_ahead(from, direction, radius, distance_inside);
-            if (!hit) {
+            const std::optional<double> way = way_to_boundary(from, direction, radius, kRimReach, distance_inside);
+            if (!way) {
                 return;
             }
-            sample.place = *hit;
-            const Point inside = *hit - kRimDepth * radius * direction;
+            sample.place = from + *way * direction;
+            const Point inside = sample.place - kRimDepth * radius * direction;
             const double step = 0.25 * kRimDepth * radius;
-            const auto slope = [&](const Point& way) {
-                return distance_inside(inside - step * way) - distance_inside(inside + step * way);
+            const auto slope = [&](const Point& axis) {
+                return distance_inside(inside - step * axis) - distance_inside(inside + step * axis);
             };
             sample.normal = unit({slope({1.0, 0.0, 0.0}), slope({0.0, 1.0, 0.0}), slope({0.0, 0.0, 1.0})});
             if (dot(sample.normal, direction) >= kLeastFacing) {
@@ -482,10 +467,7 @@ class Rims {
         if (samples_.empty()) {
             return;
         }
-        std::vector<Point> places;
-        for (const RimSample& sample : samples_) {
-            places.push_back(sample.place);
-        }
+        const auto places = each_of<Point>(samples_, &RimSample::place);
         const PointTree tree = build_point_tree(places);
         DisjointSets rims(samples_.size());
         for (std::size_t i = 0; i < samples_.size(); ++i) {
@@ -584,16 +566,9 @@ std::vector<Index> numbers_by_area(const WallMesh& walls, std::size_t count, Ind
     for (std::size_t t = 0; t < walls.walls.size(); ++t) {
         areas[walls.walls[t]] += triangle_area(walls.mesh, walls.mesh.triangles[t]);
     }
-    std::vector<Index> order(count);
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::greater<>(), [&](Index w) { return areas[w]; });
-    std::vector<Index> numbers(count);
-    used = 0;
-    for (const Index w : order) {
-        numbers[w] = used;
-        used += areas[w] > 0.0 ? 1 : 0;
-    }
-    return numbers;
+    used = static_cast<Index>(std::ranges::count_if(areas, [](double area) { return area > 0.0; }));
+    return places_in(sorted_indices(
+        count, [&](Index w) { return areas[w]; }, std::greater<>()));
 }
 
 ShellMesh shells_of(const WallMesh& walls, const std::vector<WallMiddle>& middles, const WallShapes& shapes) {
@@ -626,8 +601,7 @@ ShellMesh shells_of(const WallMesh& walls, const std::vector<WallMiddle>& middle
                 rims.push_back(rim);
             }
         }
-        std::ranges::sort(at);
-        at.erase(std::unique(at.begin(), at.end()), at.end());
+        sort_unique(at);
         const Point middle = shapes.place(midpoint(a, b), at, rims);
         // More than the height of an arc of 90 degrees is an error, and would fold the element.
         constexpr double kHighest = 0.2;
@@ -706,11 +680,7 @@ ShellMesh shell_mesh(const MedialComplex& complex, const Solid& solid, const She
     }
     check_shell_options(options);
     const Midsurface surface = midsurface(complex, solid, {options.angle, false}, execution);
-    return in_arena(execution, [&] {
-        return shells_in(
-            surface, options,
-            [&](const Point& p) { return (solid.inside(p) ? 1.0 : -1.0) * distance(p, *solid.nearest(p)); }, execution);
-    });
+    return in_arena(execution, [&] { return shells_in(surface, options, distance_inside(solid), execution); });
 }
 
 }  // namespace scaleaxis::inline v1

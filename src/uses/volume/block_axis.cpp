@@ -17,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 #include "delaunay/triangulation.hpp"
 #include "sampling/inner_cells.hpp"
 #include "scaleaxis/balls.hpp"
@@ -253,11 +254,10 @@ UnionComplex union_of(std::vector<Ball> balls, const VolumeAxisOptions& options)
         return std::pair(order_of(found.points[a]), found.balls[a]) <
                std::pair(order_of(found.points[b]), found.balls[b]);
     });
-    std::vector<Index> rank(order.size());
-    for (Index i = 0; i < static_cast<Index>(order.size()); ++i) {
-        rank[order[i]] = i;
-        parts.vertices.points.push_back(found.points[order[i]]);
-        parts.vertices.balls.push_back(found.balls[order[i]]);
+    const std::vector<Index> rank = places_in(order);
+    for (const Index i : order) {
+        parts.vertices.points.push_back(found.points[i]);
+        parts.vertices.balls.push_back(found.balls[i]);
     }
     for (const auto& [a, b] : found.pairs) {
         parts.vertices.pairs.push_back({std::min(rank[a], rank[b]), std::max(rank[a], rank[b])});
@@ -267,10 +267,7 @@ UnionComplex union_of(std::vector<Ball> balls, const VolumeAxisOptions& options)
 
 /// A polygon from its least vertex on, in the direction of the less of the two beside it.
 std::vector<Index> turned(std::span<const Index> polygon, const std::vector<Index>& rank) {
-    std::vector<Index> result;
-    for (const Index v : polygon) {
-        result.push_back(rank[v]);
-    }
+    auto result = each_of<Index>(polygon, [&](Index v) { return rank[v]; });
     std::rotate(result.begin(), std::ranges::min_element(result), result.end());
     if (result[1] > result.back()) {
         std::reverse(result.begin() + 1, result.end());
@@ -285,10 +282,7 @@ void take_owned(VolumePart& part, const MedialComplex& complex, const VolumeBloc
     std::iota(order.begin(), order.end(), 0);
     tasks::parallel_sort(order.begin(), order.end(),
                          [&](Index a, Index b) { return is_less(complex.vertices[a], complex.vertices[b]); });
-    std::vector<Index> rank(count);
-    for (Index i = 0; i < count; ++i) {
-        rank[order[i]] = i;
-    }
+    const std::vector<Index> rank = places_in(order);
     const Box core = box_of_core(block);
     std::vector<std::uint8_t> is_owned(count);  // by rank
     for (Index i = 0; i < count; ++i) {

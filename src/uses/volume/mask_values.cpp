@@ -44,8 +44,7 @@ std::vector<float> mask_values(const std::array<Index, 3>& sizes, std::span<cons
             "a mask needs as many values as its sizes say, and at least one");
     require(passes >= 0 && passes <= kMostPasses, "a mask is smoothed 0 to 4 times");
     return in_arena(execution, [&, width = width, height = height, depth = depth] {
-        std::vector<std::int32_t> sums(mask.size());
-        for_each_index(mask.size(), [&](std::size_t i) { sums[i] = mask[i] != 0 ? 1 : 0; });
+        auto sums = mapped<std::int32_t>(mask.size(), [&](std::size_t i) { return mask[i] != 0 ? 1 : 0; });
         std::int32_t most = 1;
         for (int pass = 0; pass < passes; ++pass, most *= 64) {
             for (int axis = 0; axis < 3; ++axis) {

@@ -17,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/delaunay.hpp"
 #include "scaleaxis/errors.hpp"
@@ -87,10 +88,8 @@ class SizeData {
     }
 
     std::vector<double> at(std::span<const Point> points) const {
-        std::vector<double> sizes(points.size());
-        for_each_index(
-            points.size(), [&](std::size_t i) { sizes[i] = at(points[i]); }, std::size_t{256});
-        return sizes;
+        return mapped<double>(
+            points.size(), [&](std::size_t i) { return at(points[i]); }, std::size_t{256});
     }
 };
 
@@ -144,9 +143,7 @@ class SizeSearch {
             data_.sources = build_slab_tree(slabs);
         }
         data_.surface_sizes = data_.at(data_.surface.vertices);
-        for (const SizePlace& place : places_) {
-            data_.middles.push_back(place.middle);
-        }
+        data_.middles = each_of<Point>(places_, &SizePlace::middle);
         report(execution_, kSizesStage, 1.0);
         return std::make_shared<const SizeData>(std::move(data_));
     }
@@ -157,15 +154,13 @@ class SizeSearch {
     // \param sign of normals that lead to it
     std::vector<Ball> balls_of(const Solid& side, double sign, std::size_t first) const {
         const std::vector<Point>& vertices = data_.surface.vertices;
-        std::vector<Ball> balls(vertices.size() - first);
-        for_each_index(
-            balls.size(),
+        return mapped<Ball>(
+            vertices.size() - first,
             [&](std::size_t i) {
                 const std::size_t v = first + i;
-                balls[i] = ball_between_sides(side, vertices[v], sign * normals_[v], slope_, most_radius_);
+                return ball_between_sides(side, vertices[v], sign * normals_[v], slope_, most_radius_);
             },
             std::size_t{64});
-        return balls;
     }
 
     // Finds those of vertices that have none yet; of feature sizes all, for any ball may be near any vertex.
@@ -250,11 +245,7 @@ class SizeSearch {
             if (edges.empty() || mesh.triangles.size() > kMostSizedTriangles) {
                 return;
             }
-            std::vector<Point> middles(edges.size());
-            std::ranges::transform(edges, middles.begin(), [&](const MeshEdge& edge) {
-                return midpoint(mesh.vertices[edge[0]], mesh.vertices[edge[1]]);
-            });
-            divide(mesh, edges, middles);
+            halve(mesh, edges);
             find_places(0.3 + 0.5 * (round + 1) / kSizeRefinements);
         }
     }
@@ -323,11 +314,7 @@ class SizeSearch {
 
 // Of those points that are nearer to one of a smaller size than half of that none; by ascending size.
 std::vector<Index> spread_points(const std::vector<Point>& points, const std::vector<double>& sizes) {
-    std::vector<Index> order(points.size());
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        order[i] = static_cast<Index>(i);
-    }
-    std::ranges::stable_sort(order, {}, [&](Index i) { return sizes[i]; });
+    const auto order = sorted_indices(points.size(), [&](Index i) { return sizes[i]; });
     const PointTree tree = build_point_tree(points);
     std::vector<char> is_covered(points.size(), 0);
     std::vector<Index> spread;

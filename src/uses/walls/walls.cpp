@@ -17,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/nearest.hpp"
 #include "scaleaxis/thickness.hpp"
@@ -201,11 +202,7 @@ class WallSearch {
             if (edges.empty() || mesh.triangles.size() > given + kMostAdded) {
                 return;
             }
-            std::vector<Point> middles(edges.size());
-            std::ranges::transform(edges, middles.begin(), [&](const MeshEdge& edge) {
-                return midpoint(mesh.vertices[edge[0]], mesh.vertices[edge[1]]);
-            });
-            divide(mesh, edges, middles);
+            halve(mesh, edges);
             find_balls();
         }
     }
@@ -230,12 +227,9 @@ class WallSearch {
                 }
             }
         }
-        std::vector<Index> lowest;
-        for (Index v = 0; v < static_cast<Index>(side.balls.size()); ++v) {
-            if (has_lower[v] == 0 && (has_higher[v] != 0 || rise == 0.0) && is_wanted(v)) {
-                lowest.push_back(v);
-            }
-        }
+        auto lowest = indices_where(side.balls.size(), [&](Index v) {
+            return has_lower[v] == 0 && (has_higher[v] != 0 || rise == 0.0) && is_wanted(v);
+        });
         std::ranges::stable_sort(lowest, {}, [&](Index v) { return sign * side.value(v); });
         return lowest;
     }
@@ -249,9 +243,8 @@ class WallSearch {
         const std::vector<Index> beside = lowest_vertices(side, 1.0, kUniform, [&](Index v) {
             return side.value(v) >= limit && side.value(v) < kBesideLimit * *side.limit;
         });
-        std::vector<Ball> found(beside.size());
-        for_each_index(
-            beside.size(), [&](std::size_t i) { found[i] = downhill(side.solid, side.balls[beside[i]], slope_); },
+        auto found = mapped<Ball>(
+            beside.size(), [&](std::size_t i) { return downhill(side.solid, side.balls[beside[i]], slope_); },
             std::size_t{8});
         std::erase_if(found, [&](const Ball& ball) { return !(2.0 * ball.radius < limit); });
         std::ranges::stable_sort(found, {}, &Ball::radius);
@@ -340,8 +333,7 @@ class WallSearch {
     void add_findings(const SurfaceSide& side, FindingKind kind, double limit) {
         const bool is_thick = kind == FindingKind::kThickWall;
         const double sign = is_thick ? -1.0 : 1.0;
-        std::vector<double> values(side.balls.size());
-        std::ranges::transform(side.balls, values.begin(), [&](const Ball& b) { return sign * 2.0 * b.radius; });
+        const auto values = each_of<double>(side.balls, [&](const Ball& b) { return sign * 2.0 * b.radius; });
         const double strict = sign * limit - walls_.tolerance;
         const ThinRegions regions = thin_regions(walls_.surface, values, strict);
         DisjointSets joined(regions.regions.size());
@@ -471,9 +463,7 @@ class WallSearch {
 
     // The smallest ball below the starts; among several within the tolerance the largest.
     Ball smallest_ball(const SurfaceSide& side, const std::vector<Index>& starts) const {
-        std::vector<Ball> balls(starts.size());
-        std::ranges::transform(starts, balls.begin(),
-                               [&](Index v) { return downhill(side.solid, side.balls[v], slope_); });
+        auto balls = each_of<Ball>(starts, [&](Index v) { return downhill(side.solid, side.balls[v], slope_); });
         const double least = std::ranges::min(balls, {}, &Ball::radius).radius;
         Ball result{{}, -1.0};
         for (const Ball& ball : balls) {
@@ -507,11 +497,7 @@ class WallSearch {
     // The worst first, after those of other kinds.
     void number_findings(std::vector<Finding> findings, const std::vector<Index>& vertex_findings, FindingKind kind) {
         const double sign = kind == FindingKind::kThickWall ? -1.0 : 1.0;
-        std::vector<Index> order(findings.size());
-        for (std::size_t i = 0; i < order.size(); ++i) {
-            order[i] = static_cast<Index>(i);
-        }
-        std::ranges::stable_sort(order, {}, [&](Index f) { return sign * findings[f].value; });
+        const auto order = sorted_indices(findings.size(), [&](Index f) { return sign * findings[f].value; });
         std::vector<Index> numbers(findings.size());
         for (const Index f : order) {
             numbers[f] = static_cast<Index>(walls_.findings.size());
@@ -539,6 +525,12 @@ void check_options(const WallOptions& options) {
         require(!limit || (*limit > 0.0 && std::isfinite(*limit)),
                 "a limit of walls and gaps must be a positive length");
     }
+    require(options.min_wall || options.max_wall || options.min_gap,
+            "walls and gaps need a limit: of thin walls, thick walls, or gaps");
+    require(!options.min_wall || !options.max_wall || *options.min_wall < *options.max_wall,
+            "the limit of thin walls must be less than that of thick ones");
+    require(options.edge > 0.0 && options.edge <= 1.0,
+            "the longest edge must be more than 0, and at most the diagonal: 1");
     check_wall_angle(options.angle);
 }
 
@@ -549,15 +541,13 @@ std::vector<WallAt> between_sides_at(const Solid& solid, std::span<const Point> 
     const double most = solid.bounds().diagonal();
     return in_arena(execution, [&] {
         solid.prepare_nearest();
-        std::vector<WallAt> result(points.size());
-        for_each_index(
+        return mapped<WallAt>(
             points.size(),
             [&](std::size_t i) {
                 const Ball ball = ball_between_sides(solid, points[i], slope, most);
-                result[i] = {ball.radius < most ? 2.0 * ball.radius : kInfinity, ball, opposite_contacts(solid, ball)};
+                return WallAt{ball.radius < most ? 2.0 * ball.radius : kInfinity, ball, opposite_contacts(solid, ball)};
             },
             std::size_t{64});
-        return result;
     });
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "spatial/weld.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -128,8 +129,7 @@ CleanSurface clean_surface(std::vector<Triangle> triangles, std::size_t vertex_c
     const std::vector<char> is_dropped = copies_to_drop(triangles, surface.edges);
     surface.copies = std::ranges::count(is_dropped, 1);
     if (surface.copies > 0) {
-        std::size_t t = 0;
-        std::erase_if(triangles, [&](const Triangle&) { return is_dropped[t++] != 0; });
+        erase_marked(triangles, is_dropped);
         surface.edges = sides_of_edges(triangles, vertex_count);
     }
     surface.triangles = std::move(triangles);

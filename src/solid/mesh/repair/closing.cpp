@@ -15,6 +15,7 @@
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 #include "solid/mesh/repair/orientation.hpp"
 #include "solid/mesh/repair/patch.hpp"
 #include "solid/mesh/winding.hpp"
@@ -55,13 +56,12 @@ Point centroid_of(const std::vector<Point>& points, std::span<const Index> loop)
 /// \param given so many of the triangles are no patches: those are kept in `left_out`
 void drop(std::vector<Triangle>& triangles, const std::vector<char>& is_dropped, std::size_t given,
           std::vector<Triangle>& left_out) {
-    std::size_t t = 0;
-    std::erase_if(triangles, [&](const Triangle& triangle) {
-        if (is_dropped[t] != 0 && t < given) {
-            left_out.push_back(triangle);
+    for (std::size_t t = 0; t < given; ++t) {
+        if (is_dropped[t] != 0) {
+            left_out.push_back(triangles[t]);
         }
-        return is_dropped[t++] != 0;
-    });
+    }
+    erase_marked(triangles, is_dropped);
 }
 
 // ---------------------------------------------------------------------------------------------------------------------
@@ -78,18 +78,10 @@ struct Visibility {
     bool is_turned() const { return back > 2 * front && 20 * back > rays; }
 };
 
-/// A direction of the unit sphere, evenly spread.
-Point direction(std::uint64_t i, std::uint64_t k) {
-    constexpr std::uint64_t kSeed = 1;
-    const double z = 2.0 * random_unit(kSeed, i, 2 * k) - 1.0;
-    const auto [cosine, sine] = on_circle(random_unit(kSeed, i, 2 * k + 1));
-    const double r = std::sqrt(std::max(0.0, 1.0 - z * z));
-    return {r * cosine, r * sine, z};
-}
-
 std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation& parts) {
     constexpr std::size_t kRays = 40'000;  // in all
     constexpr std::size_t kMostTriangles = 64, kDirections = 8;
+    constexpr std::uint64_t kSeed = 1;
     const std::size_t part_count = static_cast<std::size_t>(parts.components);
     const std::size_t share = std::clamp<std::size_t>(kRays / kDirections / part_count, 1, kMostTriangles);
     std::vector<std::size_t> sizes(part_count, 0), passed(part_count, 0);
@@ -114,7 +106,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
             const Point center = (1.0 / 3.0) * (p[u] + p[v] + p[w]);
             const Point normal = cross(p[v] - p[u], p[w] - p[u]);
             for (std::size_t k = 0; k < kDirections; ++k) {
-                const Point ray = direction(i, k);
+                const Point ray = random_unit_vector(kSeed, i, k);
                 bool gets_out = true;
                 for_each_crossing(bvh, center, center + 2.0 * box.diagonal() * ray,
                                   [&](Index t, const SegmentCrossing&) { gets_out &= bvh.order[t] == chosen[i]; });
@@ -161,9 +153,8 @@ std::vector<char> find_walls(const std::vector<Triangle>& triangles, const Index
             }
         }
     }
-    std::vector<Index> by_visibility(seen.size());
-    std::iota(by_visibility.begin(), by_visibility.end(), 0);
-    std::ranges::stable_sort(by_visibility, {}, [&](Index part) { return seen[part].front + seen[part].back; });
+    const auto by_visibility =
+        sorted_indices(seen.size(), [&](Index part) { return seen[part].front + seen[part].back; });
     std::vector<char> is_gone(seen.size(), 0);
     for (const Index part : by_visibility) {
         if (!may_go[part]) {

@@ -98,15 +98,14 @@ std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, c
         }
     }
     const Box box = box_around(mesh.vertices);
-    std::vector<int> windings(samples.size());
-    for_each_index(
+    const auto windings = mapped<int>(
         samples.size(),
         [&](std::size_t i) {
             // A corner might be where components touch.
             const auto& [u, v, w] = mesh.triangles[samples[i]];
             const Point center = (1.0 / 3.0) * (mesh.vertices[u] + mesh.vertices[v] + mesh.vertices[w]);
-            windings[i] = winding_number(bvh, box, center,
-                                         [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
+            return winding_number(bvh, box, center,
+                                  [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
         },
         std::size_t{16});
     std::vector<int> lowest(size.size(), std::numeric_limits<int>::max());

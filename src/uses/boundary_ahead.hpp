@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// How far the boundary of a solid is ahead.
+#pragma once
+
+#include <functional>
+#include <optional>
+
+#include "axis/envelope_data.hpp"
+#include "scaleaxis/solid.hpp"
+
+namespace scaleaxis::inline v1 {
+
+/// The distance of a point to the boundary: positive inside.
+using DistanceInside = std::function<double(const Point&)>;
+
+/// \param solid that knows the nearest points of its boundary, and outlives the result
+inline DistanceInside distance_inside(const Solid& solid) {
+    return [&](const Point& p) { return (solid.inside(p) ? 1.0 : -1.0) * distance(p, *solid.nearest(p)); };
+}
+
+/// The way from a point of the solid to the boundary in some direction: steps as long as the distance to it cannot miss
+/// it. Nothing if it is farther than `most`, or met at less than about 25 degrees, which takes more steps.
+inline std::optional<double> way_to_boundary(const Point& from, const Point& direction, double radius, double most,
+                                             const DistanceInside& distance) {
+    constexpr double kReached = 1e-4;  // of the radius
+    constexpr int kMostSteps = 20;
+    double way = 0.0;
+    for (int step = 0; step < kMostSteps && way <= most * radius; ++step) {
+        const double left = distance(from + way * direction);
+        way += left;
+        if (left <= kReached * radius) {
+            return way;
+        }
+    }
+    return std::nullopt;
+}
+
+}  // namespace scaleaxis::inline v1
