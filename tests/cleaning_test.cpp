@@ -285,9 +285,23 @@ TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
         EXPECT_FALSE(std::abs(p.x - 3.0) < 1e-9 && p.z > 0.0);
     }
     EXPECT_NEAR(highest, 2.0, 0.1);
-    // Discs do not reach into the corners of fins, where the sheets across them hang together then.
+    // Discs do not reach into the corners of fins, which stay all the same, or the sheets across would hang together.
     const MedialComplex less = clean(complex, {.thickness = 0.3}).complex;
+    EXPECT_EQ(less.sheets, 5);
     EXPECT_TRUE(std::ranges::any_of(less.vertices, [](const Point& p) { return p.x == 3.0 && p.z > 0.4; }));
+}
+
+TEST(Clean, KeepsAFinAlongAllOfItsSeam) {
+    // From y = 3 on it becomes low.
+    MedialComplex complex = plate_with_fins(3.0);
+    for (Point& p : complex.vertices) {
+        p.z *= p.x == 8.0 ? std::clamp(4.0 - p.y, 0.1, 1.0) : 1.0;
+    }
+    const CleanedComplex cleaned = clean(complex, {.thickness = 0.75});
+    expect_well_formed(cleaned.complex);
+    EXPECT_EQ(cleaned.statistics.sheets_after, 3) << "else the plate is one sheet around the end of the fin";
+    EXPECT_TRUE(std::ranges::none_of(cleaned.complex.vertices, [](const Point& p) { return p.x == 3.0 && p.z > 0.0; }));
+    EXPECT_TRUE(std::ranges::any_of(cleaned.complex.vertices, [](const Point& p) { return p.y > 5.9 && p.z > 0.0; }));
 }
 
 TEST(Clean, TakesCrumbsWithSmallBallsUnlessTheyStandAlone) {

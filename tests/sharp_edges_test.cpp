@@ -182,31 +182,87 @@ TEST(SharpEdges, OfBarsAndPyramidsGiveTheSameSheetsInAnyPosition) {
     }
 }
 
+/// Faces that go around, with four corners in each row of vertices: between one row and the next.
+TriangleMesh rings(std::vector<Point> rows, std::span<const std::array<Index, 2>> neighbors) {
+    TriangleMesh mesh{std::move(rows), {}};
+    for (const auto& [from, to] : neighbors) {
+        for (Index k = 0; k < 4; ++k) {
+            const Index a = 4 * from + k;
+            const Index b = 4 * from + (k + 1) % 4;
+            const Index c = 4 * to + (k + 1) % 4;
+            mesh.triangles.insert(mesh.triangles.end(), {{a, b, c}, {a, c, 4 * to + k}});
+        }
+    }
+    return mesh;
+}
+
+void add_rectangle(double x, double y, double z, std::vector<Point>& rows) {
+    rows.insert(rows.end(), {{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}});
+}
+
 // In the corners of a frame of square bars, where the inner edge is farther away than the faces, the middle planes of
 // the bars are left: triangles with an arc for a side, 1.8 tolerances wide. They are no slivers.
 TEST(SharpEdges, OfAFrameOfSquareBarsLeaveTheSheetsInItsCorners) {
-    TriangleMesh frame;
+    std::vector<Point> rows;
     for (const double half : {3.0, 2.0}) {
-        for (const double z : {0.0, 1.0}) {
-            for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-                frame.vertices.push_back({half * x, half * y, z});
-            }
-        }
+        add_rectangle(half, half, 0.0, rows);
+        add_rectangle(half, half, 1.0, rows);
     }
-    const auto add_quad = [&](Index a, Index b, Index c, Index d) {
-        frame.triangles.insert(frame.triangles.end(), {{a, b, c}, {a, c, d}});
-    };
-    for (Index k = 0; k < 4; ++k) {
-        const Index next = (k + 1) % 4;
-        add_quad(k, next, next + 4, k + 4);            // outside
-        add_quad(next + 8, k + 8, k + 12, next + 12);  // inside
-        add_quad(k + 4, next + 4, next + 12, k + 12);  // above
-        add_quad(next, k, k + 8, next + 8);            // below
-    }
+    const TriangleMesh frame = rings(rows, std::array<std::array<Index, 2>, 4>{{{0, 1}, {3, 2}, {1, 3}, {2, 0}}});
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
         EXPECT_EQ(axis_of(*mesh_solid(moved(frame, random_turn(random))), 1.1, 0.01).complex.sheets, 18);
+    }
+}
+
+// Below the ends of a rib's edges their sheets become narrow, and go on down to the middle of the plate all the same.
+TEST(SharpEdges, OfARibGoOnBelowItsFeet) {
+    std::vector<Point> rows;
+    add_rectangle(30.0, 20.0, 0.0, rows);
+    add_rectangle(30.0, 20.0, 3.0, rows);
+    add_rectangle(20.0, 1.25, 3.0, rows);
+    add_rectangle(20.0, 1.25, 12.0, rows);
+    TriangleMesh rib = rings(rows, std::array<std::array<Index, 2>, 3>{{{0, 1}, {1, 2}, {2, 3}}});
+    rib.triangles.insert(rib.triangles.end(), {{0, 2, 1}, {0, 3, 2}, {12, 13, 14}, {12, 14, 15}});
+    for (std::uint64_t seed = 11; seed <= 18; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const TriangleMesh turned = moved(rib, random_turn(random));
+        EXPECT_EQ(axis_of(*mesh_solid(turned), 1.1, 0.01).complex.sheets, 22);
+        EXPECT_EQ(axis_of(*mesh_solid(turned), 1.1, 0.02).complex.sheets, 22);
+    }
+}
+
+// A wing: each of its ends has one edge, from the trailing corner around and back to it (NACA 0015, closed).
+TEST(SharpEdges, AroundAWingAreReachedFromTheirOnlyCorner) {
+    std::vector<std::array<double, 2>> profile;
+    constexpr int kSides = 116;
+    for (int k = 0; k < kSides; ++k) {
+        const double angle = 2.0 * std::numbers::pi * k / kSides;
+        const double t = 0.5 * (1.0 + std::cos(angle));
+        const double half = 0.2969 * std::sqrt(t) - t * (0.126 + t * (0.3516 - t * (0.2843 - 0.1036 * t)));
+        profile.push_back({10.0 * t, (angle < std::numbers::pi ? 7.5 : -7.5) * half});
+    }
+    const TriangleMesh wing = prism(profile, 20.0);
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const AxisAtScale axis = axis_of(*mesh_solid(moved(wing, random_turn(random))), 1.1, 0.01);
+        EXPECT_EQ(axis.complex.sheets, 3);
+        EXPECT_NEAR(axis.sharp_statistics->length, axis.sharp_statistics->known, 1e-3);
+    }
+}
+
+// Beside an acute corner the face of a short edge is narrow.
+TEST(SharpEdges, OfBarbsAreReachedThoughShort) {
+    const TriangleMesh arrow = prism({{9, 2}, {6, 4}, {6, 3}, {0, 3}, {0, 1}, {6, 1}, {6, 0}}, 10.0);
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        const TriangleMesh turned = moved(arrow, random_turn(random));
+        EXPECT_EQ(axis_of(*mesh_solid(turned), 1.1, 0.01).complex.sheets, 16);
+        EXPECT_EQ(axis_of(*mesh_solid(turned), 1.1, 0.02).complex.sheets, 16);
     }
 }
 

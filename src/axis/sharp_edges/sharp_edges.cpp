@@ -42,7 +42,10 @@ constexpr double kLeastFlat = 0.8;
 
 // Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
 bool is_flat(const EdgeLine& line, const Solid& solid, double tolerance) {
-    const EdgeLine part = section_of(line, 0.0, line.length(), tolerance, kLineSag * tolerance);
+    // Across from its ends a face ends, too, in acute corners. What is left has two places at least.
+    const double ends =
+        line.is_closed() ? 0.0 : std::clamp(0.5 * line.length() - kLeastLine * tolerance, 0.0, kAcross * tolerance);
+    const EdgeLine part = section_of(line, ends, line.length() - ends, tolerance, kLineSag * tolerance);
     std::vector<Point> points;  // two beside each place
     for (std::size_t k = 1; k < part.points.size(); ++k) {
         const Point place = midpoint(part.points[k - 1], part.points[k]);

@@ -46,7 +46,6 @@ constexpr int kPartsOfLoop = 3;       // the shortest way below a third of a loo
 struct Part {
     EdgeLine line;  // in steps
     std::array<Index, 2> ends;
-    bool has_corners = true;
     std::array<std::vector<Index>, 2> feet{};  // from which it has been tried
 };
 
@@ -105,34 +104,37 @@ class Strips {
     }
 
    private:
-    std::vector<Part> parts_of(std::span<const EdgeLine> lines) const {
-        Index next_end = 0;
+    std::vector<Part> parts_of(std::span<const EdgeLine> lines) {
         for (const EdgeLine& line : lines) {
-            next_end = std::max({next_end, line.ends[0] + 1, line.ends[1] + 1});
+            first_cut_ = std::max({first_cut_, line.ends[0] + 1, line.ends[1] + 1});
         }
         std::vector<Part> parts;
+        Index next_end = first_cut_;
         for (const EdgeLine& line : lines) {
-            const int count = line.is_closed() ? kPartsOfLoop : 1;
+            const int count = line.ends[0] == line.ends[1] ? kPartsOfLoop : 1;
             const double length = line.length() / count;
             // A place between the ends at least: else the strip would end in an edge between two corners.
             const double step = std::min(kPlaceStep * tolerance_, 0.5 * length);
             for (int i = 0; i < count; ++i) {
-                const std::array ends =
-                    line.is_closed() ? std::array{next_end + i, next_end + (i + 1) % count} : line.ends;
-                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kLineSag * tolerance_), ends,
-                                 !line.is_closed()});
+                const auto end_of = [&](int k) {
+                    return line.is_closed() || k % count != 0 ? next_end + k % count : line.ends[k == 0 ? 0 : 1];
+                };
+                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kLineSag * tolerance_),
+                                 {end_of(i), end_of(i + 1)}});
             }
-            next_end += line.is_closed() ? count : 0;
+            next_end += count;
         }
-        std::erase_if(parts,
-                      [](const Part& part) { return part.line.points.size() < 3 || part.ends[0] == part.ends[1]; });
+        std::erase_if(parts, [](const Part& part) { return part.line.points.size() < 3; });
         return parts;
     }
 
+    // Else it is where a loop is cut.
+    bool is_corner(Index end) const { return end < first_cut_; }
+
     bool reach(Part& part) {
         stop_if_cancelled();
-        const std::array feet{feet_of(part.ends[0], part.line.points.front(), part.has_corners),
-                              feet_of(part.ends[1], part.line.points.back(), part.has_corners)};
+        const std::array feet{feet_of(part.ends[0], part.line.points.front()),
+                              feet_of(part.ends[1], part.line.points.back())};
         if (feet == part.feet) {
             return false;  // its corners are what they were
         }
@@ -157,13 +159,13 @@ class Strips {
     };
 
     // From where strips may begin.
-    std::vector<Index> feet_of(Index end, const Point& place, bool is_corner) const {
+    std::vector<Index> feet_of(Index end, const Point& place) const {
         const auto known = corners_.find(end);
         if (known != corners_.end()) {
             return {known->second.feet.begin(), known->second.feet.end()};
         }
         const Index nearest = tree_.order[nearest_point(tree_, place).position];
-        if (!is_corner) {
+        if (!is_corner(end)) {
             return {nearest};
         }
         // In the wedge at the place no ball is larger beside its distance than one that touches all faces there.
@@ -180,8 +182,9 @@ class Strips {
         return {std::ranges::min(near).second};
     }
 
-    // A line as a point sees it: how far it is, and how far the planes on both sides of it are.
+    // A line as a point sees it: which place is nearest, how far it is, and how far the planes on both sides of it are.
     struct View {
+        double position;
         double away;
         double nearer;
         double farther;
@@ -192,7 +195,7 @@ class Strips {
         const auto after = std::upper_bound(line.positions.begin() + 1, line.positions.end() - 1, position);
         const auto& [n, m] = line.normals[static_cast<std::size_t>(after - line.positions.begin()) - 1];
         const auto [nearer, farther] = std::minmax({dot(n, place - p), dot(m, place - p)});
-        return {distance(p, place), nearer, farther};
+        return {position, distance(p, place), nearer, farther};
     }
 
     // Through the complex, along the line, from a foot of the one end to one of the other; along the border rather than
@@ -215,10 +218,13 @@ class Strips {
         }
         const auto cost = [&](Index v, Index next) {
             const View& view = view_of(next);
+            // A step across the middle of a loop would cut it short.
+            const double step = std::max(distance(complex_.vertices[v], complex_.vertices[next]),
+                                         std::abs(view.position - view_of(v).position));
             const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
-            return view.away > reach ? kInfinity
-                                     : factor * distance(complex_.vertices[v], complex_.vertices[next]) *
-                                           (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
+            return view.away > reach
+                       ? kInfinity
+                       : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
         const double most = kInnerCost * kMostWay * (line.length() + 2.0 * reach) * (1.0 + kCreaseReach);
         const auto is_foot = [&goals = part.feet[1]](Index v) { return std::ranges::binary_search(goals, v); };
@@ -251,11 +257,13 @@ class Strips {
         return is_place(corner) ? line.points[number_of(corner)] : complex_.vertices[corner];
     }
 
-    std::vector<double> distances_to_boundary(const std::vector<Point>& points) const {
+    // From the boundary, less than 0 outside.
+    std::vector<double> depths_of(const std::vector<Point>& points) const {
+        const auto nearest = nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity));
+        const std::vector<std::uint8_t> sides = sides_of(solid_, points);
         std::vector<double> result;
-        for (const std::optional<Point>& nearest :
-             nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity))) {
-            result.push_back(nearest ? distance(points[result.size()], *nearest) : 0.0);
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            result.push_back(nearest[i] ? (sides[i] != 0 ? 1.0 : -1.0) * distance(points[i], *nearest[i]) : 0.0);
         }
         return result;
     }
@@ -269,21 +277,20 @@ class Strips {
             const auto& [a, b, c] = triangle;
             points.push_back((1.0 / 3.0) * (at(a, line) + at(b, line) + at(c, line)));
         }
-        const std::vector<double> rooms = distances_to_boundary(points);
-        const std::vector<std::uint8_t> sides = sides_of(solid_, points);
-        std::map<Index, std::size_t> number_on_way;
+        const std::vector<double> rooms = depths_of(points);
+        std::map<Index, double> radii;
         for (std::size_t i = 0; i < way.size(); ++i) {
-            number_on_way[way[i]] = i;
+            radii[way[i]] = std::abs(rooms[i]);
         }
         std::vector<std::uint8_t> result(strip.size(), 1);
-        std::vector<std::uint8_t> is_inside(strip.size(), 1);
+        std::vector<std::uint8_t> is_inside(strip.size());
         for (std::size_t f = 0; f < strip.size(); ++f) {
             double wanted = 0.0;
             for (const Index corner : strip[f]) {
                 if (is_place(corner)) {
                     continue;
                 }
-                const double radius = rooms[number_on_way.at(corner)];
+                const double radius = radii.at(corner);
                 const View view = seen_from(complex_.vertices[corner], line);
                 wanted += radius / 3.0;
                 if (view.farther - view.nearer > 2.0 * kMostOff * tolerance_ ||
@@ -291,11 +298,7 @@ class Strips {
                     result[f] = 0;
                 }
             }
-            const std::size_t middle = way.size() + f;
-            const double room = sides[middle] != 0 ? rooms[middle] : -rooms[middle];
-            if (wanted > room + kMostOff * tolerance_) {
-                is_inside[f] = 0;
-            }
+            is_inside[f] = wanted > rooms[way.size() + f] + kMostOff * tolerance_ ? 0 : 1;
         }
         // Short stretches that are off go on.
         for_each_run(std::vector(result), [&](std::size_t first, std::size_t last) {
@@ -356,33 +359,31 @@ class Strips {
         return true;
     }
 
+    // The number of an end at that place, if it is one.
+    static Index end_at(std::size_t place, const Part& part) {
+        return place == 0 ? part.ends[0] : place + 1 == part.line.points.size() ? part.ends[1] : kNone;
+    }
+
     // The vertex for a place.
     Index target_at(std::size_t place, const Part& part) {
-        const std::size_t last = part.line.points.size() - 1;
-        const bool is_end = place == 0 || place == last;
-        Corner* const corner = is_end ? &corners_[part.ends[place == 0 ? 0 : 1]] : nullptr;
-        if (is_end && corner->vertex != kNone) {
-            return corner->vertex;
+        const Index end = end_at(place, part);
+        if (end != kNone && corners_[end].vertex != kNone) {
+            return corners_[end].vertex;
         }
         const Index vertex = add_vertex(complex_, {part.line.points[place], 0.0}, {VertexKind::kSharpEdge});
         ++statistics_.points;
-        if (is_end) {
-            corner->vertex = vertex;
-            statistics_.corners += part.has_corners ? 1 : 0;
+        if (end != kNone) {
+            corners_[end].vertex = vertex;
+            statistics_.corners += is_corner(end) ? 1 : 0;
         }
         return vertex;
     }
 
     void note_feet(const Part& part, const Triangle& triangle) {
         for (const Index corner : triangle) {
-            const bool is_start = corner == place_of(0);
-            if (is_start || corner == place_of(part.line.points.size() - 1)) {
-                std::set<Index>& feet = corners_[part.ends[is_start ? 0 : 1]].feet;
-                for (const Index foot : triangle) {
-                    if (!is_place(foot)) {
-                        feet.insert(foot);
-                    }
-                }
+            if (const Index end = is_place(corner) ? end_at(number_of(corner), part) : kNone; end != kNone) {
+                std::set<Index>& feet = corners_[end].feet;
+                std::ranges::copy_if(triangle, std::inserter(feet, feet.end()), [](Index at) { return !is_place(at); });
             }
         }
     }
@@ -410,6 +411,7 @@ class Strips {
     PointTree tree_;                         // of the vertices as given
     std::set<std::array<Index, 2>> border_;  // edges of one face, as given
     std::map<Index, Corner> corners_;        // by the numbers of ends
+    Index first_cut_ = 0;                    // the least number of an end that is no corner
 };
 
 }  // namespace

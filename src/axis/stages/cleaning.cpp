@@ -322,6 +322,38 @@ class Division {
     std::vector<int> sides_of_zero_;
 };
 
+// A sheet that stays along most of a seam stays along all of it, as far as the others there stay: else the seam would
+// open, and they become one.
+void keep_along_seams(Divided& divided) {
+    const MedialComplex& complex = divided.complex;
+    const Sides sides = sides_of(complex);
+    const Sectors sectors = sectors_of(complex, sides);
+    const auto is_low = [&](Index side) { return divided.is_low[sides.face_of[side]] != 0; };
+    const auto for_each_side_that_opens = [&](const auto& visit) {
+        for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+            const std::span<const Index> at = sides.of_edge[e];
+            const auto low = at.size() > 2 ? std::ranges::count_if(at, is_low) : 2;
+            for (const Index side : at) {
+                if (low == (is_low(side) ? 1 : 0)) {
+                    const std::array<Index, 2> corners = corners_at_ends(complex, sides, side);
+                    const auto& [p, q] = complex.edges[e];
+                    const double length = distance(complex.vertices[p], complex.vertices[q]);
+                    visit(sectors.of_corner[corners[0]], sectors.of_corner[corners[1]], low == 0 ? length : -length);
+                }
+            }
+        }
+    };
+    DisjointSets stretches(sectors.vertices.size());
+    for_each_side_that_opens([&](Index p, Index q, double) { stretches.join(p, q); });
+    std::vector<double> stays(sectors.vertices.size());  // a longer part than goes
+    for_each_side_that_opens([&](Index p, Index, double length) { stays[stretches.find(p)] += length; });
+    for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
+        if (stays[stretches.find(sectors.of_corner[c])] > 0.0) {
+            divided.is_low[sides.face_of[c]] = 0;
+        }
+    }
+}
+
 // Collapses the faces that are to go, in the order in which they burn, from that of their free edges which burns first.
 class FaceCollapse {
    public:
@@ -582,7 +614,8 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
     report(execution, kCleaningStage, 0.5);
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
-    const Divided divided = Division(burnt, depths).run();
+    Divided divided = Division(burnt, depths).run();
+    keep_along_seams(divided);
     report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();
