@@ -345,7 +345,7 @@ void keep_along_seams(Divided& divided) {
     };
     DisjointSets stretches(sectors.vertices.size());
     for_each_side_that_opens([&](Index p, Index q, double) { stretches.join(p, q); });
-    std::vector<double> stays(sectors.vertices.size());  // a longer part than goes
+    std::vector<double> stays(sectors.vertices.size());  // how much longer the part that stays is
     for_each_side_that_opens([&](Index p, Index, double length) { stays[stretches.find(p)] += length; });
     for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
         if (stays[stretches.find(sectors.of_corner[c])] > 0.0) {
