@@ -910,6 +910,55 @@ TEST(FittedUnion, IsTheDefaultWhereTheSolidAllows) {
         UnusableInput);
 }
 
+/// A unit cube with a flap along one side, which hangs on a neck; both are this thick.
+TriangleMesh cube_with_flap(double gap, double thickness) {
+    const double a = 1.0 + gap, b = a + thickness, top = 0.5 + thickness;
+    const std::vector<std::array<double, 2>> profile{{0, 0},   {1, 0},   {1, 0.5}, {a, 0.5}, {a, 0.3},
+                                                     {b, 0.3}, {b, top}, {1, top}, {1, 1},   {0, 1}};
+    const auto n = static_cast<Index>(profile.size());
+    TriangleMesh mesh;
+    for (const double z : {0.0, 1.0}) {
+        for (const auto& [x, y] : profile) {
+            mesh.vertices.push_back({x, y, z});
+        }
+    }
+    const std::vector<std::array<Index, 3>> caps{{0, 1, 2}, {0, 2, 7}, {0, 7, 8}, {0, 8, 9},
+                                                 {2, 3, 6}, {2, 6, 7}, {3, 4, 5}, {3, 5, 6}};
+    for (const auto& [u, v, w] : caps) {
+        mesh.triangles.push_back({u, w, v});
+        mesh.triangles.push_back({u + n, v + n, w + n});
+    }
+    for (Index i = 0; i < n; ++i) {
+        const Index next = (i + 1) % n;
+        mesh.triangles.push_back({i, next, next + n});
+        mesh.triangles.push_back({i, next + n, i + n});
+    }
+    return mesh;
+}
+
+TEST(FittedUnion, DoesNotFillFoldsThatNoPointNeeds) {
+    const double delta = 0.05;
+    const auto solid = mesh_solid(cube_with_flap(0.2 * delta, 0.002 * delta));
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::absolute(delta), .scales = {1.0}});
+    const RepairReport& repair = axis.fit->repair;
+    EXPECT_EQ(repair.topology, known_topology(1, 0, 0));
+    EXPECT_EQ(repair.far_points, 0);
+    EXPECT_EQ(repair.steps.back().name, "islands");
+    EXPECT_LT(repair.steps.front().added, 300) << "2,900 balls would fill the flap";
+    EXPECT_GT(axis.fit->not_needed, 0);
+}
+
+TEST(FittedUnion, TakesSmallBallsWherePartsHangOnThem) {
+    const double delta = 0.2;
+    const auto solid = mesh_solid(dumbbell_mesh(1.0, 1.05, 0.004 * delta, 8));
+    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::absolute(delta), .scales = {1.0}});
+    const RepairReport& repair = axis.fit->repair;
+    EXPECT_EQ(repair.topology, known_topology(1, 0, 0));
+    EXPECT_EQ(repair.far_points, 0);
+    EXPECT_EQ(repair.steps.back().name, "small balls");
+    EXPECT_GT(axis.fit->not_needed, 0);
+}
+
 TEST(FittedUnion, GapsThatGrowingClosesAreNamed) {
     constexpr double kGap = 0.05;
     const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});

@@ -80,7 +80,7 @@ struct RepairOptions {
 
 /// What one step of the repair did.
 struct RepairStep {
-    std::string name;                       ///< "samples", "complete 0.5", "complete 0.25", "islands", "polar"
+    std::string name;                       ///< "samples", "small balls", "complete 0.5" or 0.25, "islands", "polar"
     Index rounds = 0;                       ///< triangulations
     Index gaps = 0;                         ///< critical points in `S` that no ball covered (A)
     Index missed = 0;                       ///< critical points beside `S` where a thin part of it had no ball (C)

@@ -43,12 +43,16 @@ std::vector<Point> directions_around() {
 
 }  // namespace
 
-std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid, std::int64_t& queries) {
-    const std::vector<RestrictedFacet> facets = restricted_facets(samples);
-    const auto centroids = each_of<Point>(facets, [&](const RestrictedFacet& facet) {
+std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid,
+                                    const std::function<bool(const Point&)>& is_wanted, std::int64_t& queries) {
+    std::vector<Point> centroids;
+    for (const RestrictedFacet& facet : restricted_facets(samples)) {
         const auto [a, b, c] = vertices_of(samples, facet);
-        return (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
-    });
+        const Point centroid = (1.0 / 3.0) * (samples.points[a] + samples.points[b] + samples.points[c]);
+        if (is_wanted(centroid)) {
+            centroids.push_back(centroid);
+        }
+    }
     const std::vector<double> bounds(centroids.size(), kInfinity);
     std::vector<Point> points;
     for (const std::optional<Point>& nearest : nearest_of(solid, centroids, bounds)) {

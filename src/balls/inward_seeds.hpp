@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,10 @@
 
 namespace scaleaxis::inline v1 {
 
-/// The points of `∂S` nearest to the centroids of the restricted facets. \param queries counts them
-std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid, std::int64_t& queries);
+/// The points of `∂S` nearest to the centroids of those restricted facets whose centroid is wanted.
+/// \param queries counts them
+std::vector<Point> points_at_facets(const Samples& samples, const Solid& solid,
+                                    const std::function<bool(const Point&)>& is_wanted, std::int64_t& queries);
 
 /// A point of `∂S`, a unit direction that leads inside there, and how far from it there is surely inside.
 struct WayInside {

@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <span>
@@ -63,6 +65,10 @@ constexpr double kPointSpacing = 2.0;
 // Points this close to an island are beside it, in units of the sampling tolerance. All of the boundary is within half
 // a tolerance of the union, so the rest of it is near these.
 constexpr double kBesideIsland = 2.0;
+
+// Points beside islands that are to be joined to the rest may be this far from the union, in units of the sampling
+// tolerance: the least distance asked for above.
+constexpr double kJoined = kCompletions.back().first;
 
 constexpr Index kFewPoints = 1000;
 
@@ -151,7 +157,8 @@ class Repair {
           solid_(solid),
           options_(options),
           execution_(execution),
-          builder_(box_of(fitted, solid), true) {
+          box_(box_of(fitted, solid)),
+          builder_(box_, true) {
         result_.balls = fitted.balls;
         result_.contacts = fitted.contacts;
         limit_ = static_cast<std::size_t>((1.0 + options.growth_limit) * static_cast<double>(fitted.balls.size())) +
@@ -159,35 +166,55 @@ class Repair {
     }
 
     void complete_samples() {
-        std::vector<Point> points = boundary_points();
-        result_.report.points = static_cast<Index>(points.size());
-        points_ = points = far_from(std::move(points), result_.balls, kNearPoint * samples_.tolerance);
-        complete({.name = "samples"}, points, options_.topology ? kPromise : kFarSample);
-        if (is_wrong()) {
-            remove_islands(kPromise, false);
+        points_ = boundary_points([&](std::span<const Point> points) {
+            result_.report.points += static_cast<Index>(points.size());
+            return far_from(points, result_.balls, kNearPoint * samples_.tolerance);
+        });
+        complete({.name = "samples"}, points_, options_.topology ? kPromise : kFarSample);
+    }
+
+    // Takes islands away that may go. Where that is not enough those that points of the boundary need are joined to the
+    // rest, and gaps of the rest get balls of any size: in folds that leave with an island these would be many, in
+    // vain.
+    void join_islands() {
+        const std::vector<std::uint8_t> is_needed = remove_islands({kPromise, kIslandReach});
+        if (!is_wrong()) {
+            return;
         }
+        RepairStep step{.name = "small balls"};
+        least_radius_ = 0.0;
+        closes_gaps_alone_ = true;
+        if (!is_needed.empty()) {
+            const std::vector<Ball> around = islands(lands(), is_needed);
+            remove_islands({kIslandReach}, true);
+            builder_ = TriangulationBuilder(box_, true);
+            moved_.clear();
+            critical_.clear();
+            settled_.clear();
+            if (!around.empty()) {
+                add_balls_at(points_beside(around), kJoined * samples_.tolerance, step);
+            }
+            triangulate();
+        }
+        mend_critical_points(step);
+        find_topology();
+        step.topology = topology_;
+        finish(step);
+        remove_islands({kPromise, kIslandReach});
     }
 
     void complete_boundary() {
+        remove_islands({kPromise});
         for (const auto& [distance, name] : kCompletions) {
-            if (is_wrong()) {
-                std::vector<Point> points = points_at_facets(samples_, solid_, result_.report.queries);
-                append(points, samples_.points);
-                complete({.name = name}, beside_islands(std::move(points)), distance);
+            if (!is_wrong()) {
+                return;
             }
-            if (is_wrong()) {
-                remove_islands(kPromise, false);
+            const std::vector<Ball> around = has_only_islands() ? islands(lands()) : std::vector<Ball>();
+            if (complete({.name = name}, points_beside(around), distance)) {
+                remove_islands({kPromise});
             }
         }
-        if (is_wrong()) {
-            remove_islands(kIslandReach, false);
-        }
-        if (is_wrong()) {
-            remove_islands(kPromise, true);
-        }
-        if (is_wrong()) {
-            add_polar_balls();
-        }
+        remove_islands({kIslandReach});
     }
 
     RepairedBalls result() {
@@ -200,6 +227,10 @@ class Repair {
     RepairedBalls run() {
         complete_samples();
         complete_boundary();
+        remove_islands({kPromise}, true);
+        if (is_wrong()) {
+            add_polar_balls();
+        }
         return result();
     }
 
@@ -244,10 +275,34 @@ class Repair {
         topology_ = complex.topology;
     }
 
-    std::vector<Point> boundary_points() const {
-        std::vector<Point> points = samples_.points;
+    // Is the topology right but for components too many?
+    bool has_only_islands() const {
+        if (!is_wrong() || topology_.components <= options_.topology->components) {
+            return false;
+        }
+        Topology joined = topology_;
+        joined.euler -= joined.components - options_.topology->components;
+        joined.components = options_.topology->components;
+        return agree(joined, *options_.topology);
+    }
+
+    // The samples, and the points of the boundary at the centres of their facets, that some balls contain; all of them
+    // if there are no balls.
+    std::vector<Point> points_beside(const std::vector<Ball>& around) {
+        const auto is_beside = [&, tree = around.empty() ? BallTree() : build_ball_tree(around)](const Point& point) {
+            return around.empty() || covering_ball(tree, point) != kNone;
+        };
+        std::vector<Point> points = points_at_facets(samples_, solid_, is_beside, result_.report.queries);
+        std::ranges::copy_if(samples_.points, std::back_inserter(points), is_beside);
+        return points;
+    }
+
+    // What `choose(points)` takes of the points of the boundary that are looked at: seeds are too many to be kept.
+    template <class Choose>
+    std::vector<Point> boundary_points(const Choose& choose) const {
+        std::vector<Point> points = choose(samples_.points);
         if (options_.topology) {
-            append(points, solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_));
+            append(points, choose(solid_.seeds(kPointSpacing * samples_.tolerance, options_.seed, quiet_)));
         }
         return points;
     }
@@ -274,16 +329,14 @@ class Repair {
         }
     }
 
-    template <class T, class PlaceOf = std::identity>
-    std::vector<NearestBall> nearest_balls(const std::vector<T>& points, const PlaceOf& place_of = {}) const {
+    std::vector<NearestBall> nearest_balls(const std::vector<Point>& points) const {
         const BallTree tree = build_ball_tree(result_.balls);
-        return mapped<NearestBall>(points.size(),
-                                   [&](std::size_t i) { return nearest_ball(tree, std::invoke(place_of, points[i])); });
+        return mapped<NearestBall>(points.size(), [&](std::size_t i) { return nearest_ball(tree, points[i]); });
     }
 
     // No point may be farther from the union than this, in units of the sampling tolerance; then no critical point may
-    // be left to mend.
-    void complete(RepairStep step, std::span<const Point> points, double distance) {
+    // be left to mend. Were balls added?
+    bool complete(RepairStep step, std::span<const Point> points, double distance) {
         add_balls_at(points, distance * samples_.tolerance, step);
         if (moved_.size() < result_.balls.size()) {
             triangulate();
@@ -291,110 +344,124 @@ class Repair {
             find_topology();
         }
         step.topology = topology_;
+        const bool has_added = step.added > 0;
         finish(step);
+        return has_added;
     }
+
+    // The components of the union. The largest ones, as many as the solid has, are mainlands, the others islands, as
+    // are hidden balls: the boundary is complete beside few of these.
+    struct Lands {
+        std::vector<Index> of;                  // of each ball the one that stands for its component
+        std::vector<std::uint8_t> is_mainland;  // of balls that stand for components
+    };
 
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
     // boundary stay this near to the union, in tolerances; it does if the topology is right then, or \p wants_fewer.
-    void remove_islands(double reach, bool wants_fewer) {
-        if (topology_.components <= options_.topology->components) {
-            return;
+    // Reaches are tried in their order.
+    /// \return those needed at the last reach, see `needed_lands`; none if nothing is left to be done
+    std::vector<std::uint8_t> remove_islands(std::initializer_list<double> reaches, bool wants_fewer = false) {
+        std::vector<std::uint8_t> is_needed;
+        if (!is_wrong() || topology_.components <= options_.topology->components) {
+            return is_needed;
         }
-        const std::vector<std::uint8_t> is_needed = needed_balls(reach * samples_.tolerance);
+        const Lands all = lands();
+        const BallTree shore = build_ball_tree(islands(all));
+        const auto is_beside = [&](const Point& point) { return covering_ball(shore, point) != kNone; };
+        const std::vector<Point> points = boundary_points([&](std::span<const Point> some) {
+            return collect<std::vector<Point>>(some.size(), [&](std::size_t i, std::vector<Point>& out) {
+                if (is_beside(some[i])) {
+                    out.push_back(some[i]);
+                }
+            });
+        });
+        for (const double reach : reaches) {
+            is_needed = needed_lands(all, points, reach * samples_.tolerance);
+            if ((wants_fewer || std::ranges::count(is_needed, 1) == options_.topology->components) &&
+                keep_lands(all, is_needed, wants_fewer)) {
+                std::erase_if(points_, is_beside);
+                append(points_, far_from(points, result_.balls, kNearPoint * samples_.tolerance));
+                return {};
+            }
+        }
+        return is_needed;
+    }
+
+    // Takes all other balls away, where that is of use. Is it?
+    bool keep_lands(const Lands& lands, std::span<const std::uint8_t> is_needed, bool wants_fewer) {
         std::vector<Ball> balls;
         std::vector<Contacts> contacts;
-        for (std::size_t i = 0; i < is_needed.size(); ++i) {
-            if (is_needed[i] != 0) {
+        for (std::size_t i = 0; i < lands.of.size(); ++i) {
+            if (is_needed[lands.of[i]] != 0) {
                 balls.push_back(result_.balls[i]);
                 contacts.push_back(result_.contacts[i]);
             }
         }
         const auto removed = static_cast<Index>(result_.balls.size() - balls.size());
         if (removed == 0) {
-            return;
+            return false;
         }
         const Topology topology = dual_complex(perturbed(balls, options_.perturbation, options_.seed)).topology;
-        if (wants_fewer || agree(*options_.topology, topology)) {
-            topology_ = topology;
-            result_.balls = std::move(balls);
-            result_.contacts = std::move(contacts);
-            points_ = far_from(boundary_points(), result_.balls, kNearPoint * samples_.tolerance);
-            RepairStep step{.name = "islands", .rounds = 1, .added = -removed, .topology = topology};
-            finish(step);
+        if (!wants_fewer && !agree(*options_.topology, topology)) {
+            return false;
         }
+        topology_ = topology;
+        result_.balls = std::move(balls);
+        result_.contacts = std::move(contacts);
+        RepairStep step{.name = "islands", .rounds = 1, .added = -removed, .topology = topology};
+        finish(step);
+        return true;
     }
 
-    // For each ball the one that stands for its component.
-    std::vector<Index> components() const {
+    Lands lands() const {
         DisjointSets sets(result_.balls.size());
         for (const auto& [a, b] : edges_) {
             sets.join(a, b);
         }
-        return sets.all();
-    }
-
-    // The largest components, as many as the solid has: of the balls that stand for them. The others are islands.
-    std::vector<std::uint8_t> mainlands(std::span<const Index> components) const {
-        std::vector<double> volumes(components.size());
+        Lands lands{sets.all(), std::vector<std::uint8_t>(result_.balls.size())};
+        std::vector<double> volumes(lands.of.size());
         std::vector<Index> first;
-        for (Index i = 0; i < std::ssize(components); ++i) {
-            volumes[components[i]] += power(result_.balls[i].radius, 3);
-            if (components[i] == i) {
+        for (Index i = 0; i < std::ssize(lands.of); ++i) {
+            volumes[lands.of[i]] += power(result_.balls[i].radius, 3);
+            if (lands.of[i] == i) {
                 first.push_back(i);
             }
         }
         std::ranges::stable_sort(first, std::greater<>(), [&](Index i) { return volumes[i]; });
         first.resize(std::min(first.size(), static_cast<std::size_t>(options_.topology->components)));
-        std::vector<std::uint8_t> is_mainland(components.size());
         for (const Index i : first) {
-            is_mainland[i] = 1;
+            lands.is_mainland[i] = 1;
         }
-        return is_mainland;
+        return lands;
     }
 
-    // Balls of mainlands, and those of islands that points are far without.
-    std::vector<std::uint8_t> needed_balls(double reach) const {
-        const std::vector<Index> component = components();
-        std::vector<std::uint8_t> is_needed = mainlands(component);
-        std::vector<Ball> largest;
-        for (std::size_t i = 0; i < component.size(); ++i) {
-            if (is_needed[component[i]] != 0) {
-                largest.push_back(result_.balls[i]);
-            }
-        }
-        const BallTree tree = build_ball_tree(result_.balls);
-        for (const Point& point : far_from(boundary_points(), largest, reach)) {
-            is_needed[component[nearest_ball(tree, point).ball]] = 1;
-        }
-        for (std::size_t i = 0; i < component.size(); ++i) {
-            is_needed[i] = is_needed[component[i]];
-        }
-        return is_needed;
-    }
-
-    // Where islands are all that is wrong, more balls help beside them alone.
-    std::vector<Point> beside_islands(std::vector<Point> points) const {
-        Topology joined = topology_;
-        joined.euler -= joined.components - options_.topology->components;
-        joined.components = options_.topology->components;
-        if (topology_.components <= joined.components || !agree(joined, *options_.topology)) {
-            return points;
-        }
-        const std::vector<Index> component = components();
-        const std::vector<std::uint8_t> is_mainland = mainlands(component);
+    // The balls of islands, larger by what is beside these.
+    /// \param is_wanted 1 for the balls that stand for the islands; empty: all are wanted
+    std::vector<Ball> islands(const Lands& lands, std::span<const std::uint8_t> is_wanted = {}) const {
         std::vector<Ball> around;
-        for (std::size_t i = 0; i < component.size(); ++i) {
-            if (is_mainland[component[i]] == 0) {
+        for (std::size_t i = 0; i < lands.of.size(); ++i) {
+            const Index land = lands.of[i];
+            if (lands.is_mainland[land] == 0 && (is_wanted.empty() || is_wanted[land] != 0)) {
                 const Ball& ball = result_.balls[i];
                 around.push_back({ball.center, ball.radius + kBesideIsland * samples_.tolerance});
             }
         }
-        const BallTree tree = build_ball_tree(around);
-        return collect<std::vector<Point>>(points.size(), [&](std::size_t i, std::vector<Point>& out) {
-            if (covering_ball(tree, points[i]) != kNone) {
-                out.push_back(points[i]);
+        return around;
+    }
+
+    // Mainlands, and those islands that some of the points are far without: 1 for the balls that stand for them.
+    std::vector<std::uint8_t> needed_lands(const Lands& lands, std::span<const Point> points, double reach) const {
+        std::vector<std::uint8_t> is_needed = lands.is_mainland;
+        std::vector<Ball> mainland;
+        for (std::size_t i = 0; i < lands.of.size(); ++i) {
+            if (is_needed[lands.of[i]] != 0) {
+                mainland.push_back(result_.balls[i]);
             }
-        });
+        }
+        for (const NearestBall& nearest : nearest_balls(far_from(points, mainland, reach))) {
+            is_needed[lands.of[nearest.ball]] = 1;
+        }
+        return is_needed;
     }
 
     // Polar balls stick out of the solid, so they cover crevices much narrower than the samples are apart, along which
@@ -452,7 +519,20 @@ class Repair {
     struct FarPoint {
         Point place;
         Index tries = 0;
+        NearestBall nearest{kNone, kInfinity};
     };
+
+    // Of points that know the nearest of the first balls, the nearest of all.
+    void find_nearest(std::vector<FarPoint>& points, std::size_t known) const {
+        const BallTree tree = build_ball_tree(std::span(result_.balls).subspan(known));
+        for_each_index(points.size(), [&](std::size_t i) {
+            NearestBall& nearest = points[i].nearest;
+            const auto [ball, distance] = nearest_ball(tree, points[i].place, nearest.distance);
+            if (ball != kNone && distance < nearest.distance) {
+                nearest = {static_cast<Index>(known) + ball, distance};
+            }
+        });
+    }
 
     // Grows balls inwards from points of `∂S` that are farther than this from the union. Points with the same ball
     // nearest are mostly parts of one dip, so only the farthest of them gets a ball, and the others are looked at
@@ -468,6 +548,9 @@ class Repair {
             if (far.empty()) {
                 return;
             }
+            if (known < result_.balls.size()) {
+                find_nearest(far, known);
+            }
             known = result_.balls.size();
             const bool has_untried = std::ranges::any_of(far, [](const FarPoint& point) { return point.tries == 0; });
             if (!add(fitted(seeds_at_farthest(far, limit)), step) && !has_untried) {
@@ -479,11 +562,10 @@ class Repair {
     // Deep balls are larger and meet others. Points that these leave far get balls that touch the boundary there, those
     // tried least first: larger new balls may take the place of these.
     std::vector<Ball> seeds_at_farthest(std::vector<FarPoint>& points, double limit) {
-        const std::vector<NearestBall> nearest = nearest_balls(points, &FarPoint::place);
-        const auto rank = [&](std::size_t i) { return std::pair(points[i].tries, -nearest[i].distance); };
+        const auto rank = [&](std::size_t i) { return std::pair(points[i].tries, -points[i].nearest.distance); };
         std::vector<std::size_t> farthest(result_.balls.size(), points.size());
         for (std::size_t i = 0; i < points.size(); ++i) {
-            std::size_t& best = farthest[nearest[i].ball];
+            std::size_t& best = farthest[points[i].nearest.ball];
             if (best == points.size() || rank(i) < rank(best)) {
                 best = i;
             }
@@ -491,7 +573,7 @@ class Repair {
         std::vector<Point> deep;
         std::vector<Point> shallow;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (farthest[nearest[i].ball] == i) {
+            if (farthest[points[i].nearest.ball] == i) {
                 (points[i].tries++ == 0 ? deep : shallow).push_back(points[i].place);
             }
         }
@@ -579,6 +661,9 @@ class Repair {
         });
         Gaps gaps = seeds_at_gaps(critical_, step);
         critical_ = std::move(gaps.inside);  // until balls cover them
+        if (closes_gaps_alone_) {
+            return std::move(gaps.seeds);
+        }
         std::vector<Point> missed = missed_parts(gaps.outside);
         step.missed += static_cast<Index>(missed.size());
         append(gaps.seeds,
@@ -640,7 +725,7 @@ class Repair {
         });
     }
 
-    const double least_radius_;
+    double least_radius_;
     const Samples& samples_;
     const Solid& solid_;
     const RepairOptions& options_;
@@ -650,6 +735,8 @@ class Repair {
     bool has_tiny_balls_ = false;
     std::size_t limit_ = 0;
     double progress_ = 0.0;
+    bool closes_gaps_alone_ = false;  // and looks for no missed parts
+    const Box box_;                   // around all balls
     TriangulationBuilder builder_;
     // Of the union as it was triangulated last:
     std::vector<Ball> moved_;                  // its balls in general position
@@ -677,8 +764,9 @@ std::optional<RepairedBalls> repair_at_samples(const FittedBalls& fitted, const 
     validate(options);
     return in_arena(execution, [&]() -> std::optional<RepairedBalls> {
         report(execution, "union repair", 0.0);
-        Repair repair(fitted, samples, solid, options, least_radius_of(options), execution);
+        Repair repair(fitted, samples, solid, options, kLeastRadius, execution);
         repair.complete_samples();
+        repair.join_islands();
         report(execution, "union repair", 1.0);
         return repair.is_wrong() ? std::nullopt : std::optional(repair.result());
     });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The first part of the repair of fitted balls.
+/// The repair of balls chosen out of the fitted ones.
 #pragma once
 
 #include <optional>
@@ -9,8 +9,8 @@
 
 namespace scaleaxis::inline v1 {
 
-/// `repair` if what the samples show is enough for the topology; nothing if all of the boundary would have to be looked
-/// at. \throws as `repair`
+/// `repair` without looking at all of the boundary, and without balls smaller than a hundredth of the tolerance where
+/// the topology can do without them; nothing if it is wrong in the end. \throws as `repair`
 std::optional<RepairedBalls> repair_at_samples(const FittedBalls& fitted, const Samples& samples, const Solid& solid,
                                                const RepairOptions& options, const Execution& execution);
 
