@@ -735,6 +735,45 @@ TEST(Seeds, AreOnTheBoundaryOfTheSolidAlone) {
 // Faults
 // ---------------------------------------------------------------------------------------------------------------------
 
+TEST(MeshSolid, SharpEdgesAreThoseOfAllPairsOfTriangles) {
+    Random random;
+    TriangleMesh mesh = sphere_mesh({1, 2, 3}, 1.0, 3);
+    for (Point& p : mesh.vertices) {
+        p = p + random.between(0.0, 0.15) * (p - Point{1, 2, 3});
+    }
+    const std::unique_ptr<Solid> solid = mesh_solid(mesh);
+    const auto normal_of = [&](const std::array<Index, 3>& t) {
+        const std::vector<Point>& x = mesh.vertices;
+        return unit(cross(x[t[1]] - x[t[0]], x[t[2]] - x[t[0]]));
+    };
+    for (const double angle : {1.0, 10.0, 30.0, 61.0, 90.0, 120.0}) {
+        std::set<std::pair<Index, Index>> expected;
+        for (const std::array<Index, 3>& a : mesh.triangles) {
+            for (const std::array<Index, 3>& b : mesh.triangles) {
+                for (int i = 0; i < 9; ++i) {
+                    const Index u = a[i / 3], v = a[(i / 3 + 1) % 3], apex = b[(i % 3 + 2) % 3];
+                    if (u < v && b[i % 3] == v && b[(i % 3 + 1) % 3] == u &&
+                        dot(normal_of(a), normal_of(b)) <= std::cos(angle * std::numbers::pi / 180.0) &&
+                        dot(normal_of(a), mesh.vertices[apex] - mesh.vertices[u]) < 0.0) {
+                        expected.insert({u, v});
+                    }
+                }
+            }
+        }
+        std::set<std::pair<Index, Index>> found;
+        const std::vector<SharpEdge> edges = solid->sharp_edges(angle).value();
+        for (const SharpEdge& edge : edges) {
+            std::array<Index, 2> ends{};
+            for (int k = 0; k < 2; ++k) {
+                ends[k] = static_cast<Index>(std::ranges::find(mesh.vertices, edge.ends[k]) - mesh.vertices.begin());
+            }
+            found.insert(std::minmax(ends[0], ends[1]));
+        }
+        EXPECT_EQ(found, expected) << angle << " degrees, seed " << kSeed;
+        EXPECT_EQ(expected.empty(), angle > 100.0);
+    }
+}
+
 TEST(MeshSolid, RefusesWhatBoundsNoSolid) {
     RepairedMesh open{sphere_mesh({0, 0, 0}, 1.0, 1), {}};
     open.report.fault = {"mesh.open", "3 edges have no neighbour"};

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <numbers>
@@ -17,6 +18,7 @@
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/random.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
@@ -41,6 +43,9 @@ constexpr double kSeedsPerSquare = 9.0;
 
 // Vertices of each component that are seeds in any case.
 constexpr Index kLandmarks = 20;
+
+// Of the cosine of an angle between normals, whatever their rounding.
+constexpr double kCosineRounding = 1e-12;
 
 /// The first vertices of each component, ascending.
 std::vector<Index> find_landmarks(const Patches& components) {
@@ -249,13 +254,12 @@ class MeshSolid final : public PointwiseSolid {
     std::optional<std::vector<SharpEdge>> sharp_edges(double angle) const override {
         const double most_cosine = cosine_of_degrees(angle);
         const std::vector<Point>& points = bvh_.mesh.vertices;
-        const std::vector<Triangle>& triangles = bvh_.mesh.triangles;
-        const std::vector<Index>& opposite =
-            opposite_.get([&] { return opposite_sides(sides_of_edges(triangles, points.size())); });
-        const auto normals = mapped<Point>(triangles.size(), [&](std::size_t t) {
-            const auto& [u, v, w] = triangles[t];
-            return unit(cross(points[v] - points[u], points[w] - points[u]));
-        });
+        const auto normal_of = [&](const Triangle& t) {
+            return unit(cross(points[t[1]] - points[t[0]], points[t[2]] - points[t[0]]));
+        };
+        const std::vector<Triangle> triangles = triangles_at_ridges(normal_of, angle);
+        const auto normals = each_of<Point>(triangles, normal_of);
+        const std::vector<Index> opposite = opposite_sides(sides_of_edges(triangles, points.size()));
         std::vector<SharpEdge> edges;
         for (Index side = 0; side < static_cast<Index>(opposite.size()); ++side) {
             if (opposite[side] < side) {
@@ -293,6 +297,27 @@ class MeshSolid final : public PointwiseSolid {
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
    private:
+    /// The triangles that have all edges this sharp as sides, and others: those with two corners around which the
+    /// surface turns by half the angle or more from the normal of the first triangle there.
+    template <class NormalOf>
+    std::vector<Triangle> triangles_at_ridges(const NormalOf& normal_of, double angle) const {
+        const std::vector<Triangle>& all = bvh_.mesh.triangles;
+        const double least_cosine = cosine_of_degrees(0.5 * angle) + kCosineRounding;
+        const auto normals = mapped<Point>(all.size(), [&](std::size_t t) { return normal_of(all[t]); });
+        std::vector<Index> first(bvh_.mesh.vertices.size(), kNone);
+        std::vector<std::uint8_t> turns(first.size());
+        for (std::size_t t = 0; t < all.size(); ++t) {
+            for (const Index v : all[t]) {
+                first[v] = first[v] == kNone ? static_cast<Index>(t) : first[v];
+                turns[v] = turns[v] != 0 || dot(normals[t], normals[first[v]]) < least_cosine ? 1 : 0;
+            }
+        }
+        std::vector<Triangle> result;
+        std::ranges::copy_if(all, std::back_inserter(result),
+                             [&](const Triangle& t) { return turns[t[0]] + turns[t[1]] + turns[t[2]] > 1; });
+        return result;
+    }
+
     /// Does triangle `t` bound the solid at its point `p`?
     bool is_on_boundary(Index t, const Point& p) const {
         if (boundary_.is_whole_surface) {
@@ -388,7 +413,6 @@ class MeshSolid final : public PointwiseSolid {
     Boundary boundary_;
     std::vector<Diagnostic> warnings_;
     BuiltOnce<NearestSearch> search_;
-    BuiltOnce<std::vector<Index>> opposite_;  // see `opposite_sides`
 };
 
 }  // namespace
