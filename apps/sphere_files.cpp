@@ -59,8 +59,8 @@ std::string json_text(const std::string& name, const std::vector<NamedSpheres>& 
         document["links"].push_back({{"link", link.link}, {"spheres", spheres}, {"statistics", link.statistics}});
     }
     for (const IgnoredPair& pair : pairs) {
-        document["ignored_pairs"].push_back(
-            {{"links", {pair.first, pair.second}}, {"reason", pair.is_adjacent ? "adjacent" : "touches at rest"}});
+        document["ignored_pairs"].push_back({{"links", Json::array({pair.first, pair.second})},
+                                             {"reason", pair.is_adjacent ? "adjacent" : "touches at rest"}});
     }
     return to_text(document);
 }

@@ -80,10 +80,11 @@ TEST(JsonValue, IsWrittenAsTheLibraryWritesIt) {
     }
 }
 
-TEST(JsonValue, ListsArePairsOfAnObjectOrElements) {
+TEST(JsonValue, ListsAreFieldsOfAnObjectOrNumbers) {
     EXPECT_EQ((Json{{"a", 1}, {"b", {{"c", nullptr}}}}).dump(), R"({"a":1,"b":{"c":null}})");
-    EXPECT_EQ((Json{{"a", 1}, {2, 3}}).dump(), R"([["a",1],[2,3]])");
+    EXPECT_EQ((Json{{"pairs", {{"a", "b"}, {"c", "d"}}}}).dump(), R"({"pairs":{"a":"b","c":"d"}})");
     EXPECT_EQ((Json{{"place", {1.5, 2.0}}}).dump(), R"({"place":[1.5,2.0]})");
+    EXPECT_EQ(Json::array({"a", 1, Json::array({2.0})}).dump(), R"(["a",1,[2.0]])");
     EXPECT_EQ(Json(std::vector<int>{1, 2}).dump(), "[1,2]");
     EXPECT_EQ(Json::array({Json{{"a", 1}}}).dump(), R"([{"a":1}])");
     EXPECT_EQ(Json(std::numeric_limits<double>::quiet_NaN()).dump(), "null");

@@ -470,16 +470,17 @@ std::string to_json(const Walls& walls) {
     for (const Finding& finding : walls.findings) {
         std::string kind(name_of(finding.kind));
         std::ranges::replace(kind, ' ', '_');
-        findings.push_back({{"kind", kind},
-                            {"value", finding.value},
-                            {"limit", finding.limit},
-                            {"place", coordinates(finding.ball.center)},
-                            {"direction", coordinates(finding.direction)},
-                            {"contacts", {coordinates(finding.contacts[0]), coordinates(finding.contacts[1])}},
-                            {"ball", {{"center", coordinates(finding.ball.center)}, {"radius", finding.ball.radius}}},
-                            {"area", finding.area},
-                            {"extent", json_of(finding.extent)},
-                            {"vertices", finding.vertices}});
+        findings.push_back(
+            {{"kind", kind},
+             {"value", finding.value},
+             {"limit", finding.limit},
+             {"place", coordinates(finding.ball.center)},
+             {"direction", coordinates(finding.direction)},
+             {"contacts", Json::array({coordinates(finding.contacts[0]), coordinates(finding.contacts[1])})},
+             {"ball", {{"center", coordinates(finding.ball.center)}, {"radius", finding.ball.radius}}},
+             {"area", finding.area},
+             {"extent", json_of(finding.extent)},
+             {"vertices", finding.vertices}});
     }
     return Json({{"tolerance", walls.tolerance}, {"findings", findings}}).dump();
 }

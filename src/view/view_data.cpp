@@ -114,8 +114,8 @@ Json add_points(Arrays& arrays, const std::vector<Point>& points, const Box& box
         coordinates[1].push_back(quantized(p.y - box.min.y, size.y, steps));
         coordinates[2].push_back(quantized(p.z - box.min.z, size.z, steps));
     }
-    return {arrays.add_integers(coordinates[0]), arrays.add_integers(coordinates[1]),
-            arrays.add_integers(coordinates[2])};
+    return Json::array({arrays.add_integers(coordinates[0]), arrays.add_integers(coordinates[1]),
+                        arrays.add_integers(coordinates[2])});
 }
 
 Json add_mesh(Arrays& arrays, const TriangleMesh& mesh, const Box& box) {
@@ -234,7 +234,7 @@ Json add_scales(Arrays& arrays, const std::optional<ViewedScales>& scales, const
         return nullptr;
     }
     const Json levels = each_of<Json>(scales->levels, [&](const FiltrationLevel& level) {
-        return Json{level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume};
+        return Json::array({level.scale, level.sheets, level.balls, level.area, level.curve_length, level.volume});
     });
     const ScalePlateau& plateau = scales->plateau;
     return {{"vertices", arrays.add(scales->vertices, "f64")},

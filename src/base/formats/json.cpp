@@ -93,19 +93,15 @@ Json& Json::operator=(Json other) noexcept {
 }
 Json::~Json() = default;
 
-Json::Json(std::initializer_list<Json> values) {
-    const bool is_object = std::ranges::all_of(values, [](const Json& value) {
-        return value.is_array() && value.size() == 2 && value.elements().front().is_string();
-    });
-    if (is_object) {
-        *this = object();
-        for (const Json& value : values) {
-            (*this)[value.elements()[0].text()] = value.elements()[1];
-        }
-    } else {
-        *this = array(values);
+Json::Json(std::initializer_list<Field> fields) {
+    Members& members = value_.emplace<Members>();
+    members.reserve(fields.size());
+    for (const Field& field : fields) {
+        members.emplace_back(field.name, std::move(field.value));
     }
 }
+
+Json::Json(std::initializer_list<double> numbers) : value_(Elements(numbers.begin(), numbers.end())) {}
 
 Json Json::array(std::initializer_list<Json> elements) { return Json(Stored(Elements(elements))); }
 

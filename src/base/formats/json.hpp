@@ -47,8 +47,11 @@ class SCALEAXIS_EXPORT Json {
             push_back(element);
         }
     }
-    /// An object if all are pairs that begin with a text, and else an array.
-    Json(std::initializer_list<Json> values);
+    struct Field;
+    /// An object, `{{"name", value}, ...}`, of different names.
+    Json(std::initializer_list<Field> fields);
+    /// An array, of coordinates and the like.
+    Json(std::initializer_list<double> numbers);
     Json(const Json& other);
     Json(Json&& other) noexcept;
     Json& operator=(Json other) noexcept;
@@ -143,6 +146,11 @@ class SCALEAXIS_EXPORT Json {
     bool is_true() const;
 
     Stored value_;
+};
+
+struct Json::Field {
+    std::string_view name;
+    mutable Json value;  // taken from the list
 };
 
 }  // namespace scaleaxis::inline v1

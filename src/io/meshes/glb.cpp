@@ -141,7 +141,7 @@ Json document(const std::string& name, const Point& middle, const Json& primitiv
               const Arrays& arrays) {
     Json node{{"name", name}};
     Json result{{"asset", {{"version", "2.0"}, {"generator", "scaleaxis"}}}, {"scene", 0}};
-    result["scenes"] = Json::array({{{"nodes", {0}}}});
+    result["scenes"] = Json::array({{{"nodes", Json::array({0})}}});
     if (primitives.size() == 0) {
         result["nodes"] = Json::array({node});
         return result;
