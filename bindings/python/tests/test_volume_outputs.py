@@ -5,11 +5,11 @@ from __future__ import annotations
 
 import csv
 import json
+import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-import ome_zarr_models
 import osteoid
 import pytest
 import pyvista
@@ -96,14 +96,17 @@ def test_parts_as_vtp(made: tuple[Report, Path], tmp_path: Path) -> None:
 def test_thickness_is_a_valid_image(made: tuple[Report, Path]) -> None:
     _, output = made
     group = zarr.open_group(str(output / "thickness.zarr"), mode="r")
-    image = ome_zarr_models.open_ome_zarr(group)
-    assert type(image).__name__ == "Image" and image.ome_zarr_version == "0.4"
-    multiscale = image.attributes.multiscales[0]
-    assert [(axis.name, axis.type, axis.unit) for axis in multiscale.axes] == [
-        (name, "space", "micrometer") for name in "zyx"
-    ]
-    scale, shift = multiscale.datasets[0].coordinateTransformations
-    assert scale.scale == [SPACING] * 3 and shift.translation == list(ORIGIN[::-1])
+    if sys.version_info >= (3, 11):  # there is no ome-zarr-models for older ones
+        import ome_zarr_models
+
+        image = ome_zarr_models.open_ome_zarr(group)
+        assert type(image).__name__ == "Image" and image.ome_zarr_version == "0.4"
+        multiscale = image.attributes.multiscales[0]
+        assert [(axis.name, axis.type, axis.unit) for axis in multiscale.axes] == [
+            (name, "space", "micrometer") for name in "zyx"
+        ]
+        scale, shift = multiscale.datasets[0].coordinateTransformations
+        assert scale.scale == [SPACING] * 3 and shift.translation == list(ORIGIN[::-1])
     values = np.asarray(group["0"])
     assert values.dtype == np.uint16 and values.shape == labels().shape
     assert (values > 0).tolist() == (labels() == 7).tolist()
