@@ -177,22 +177,20 @@ class Repair {
     // rest, and gaps of the rest get balls of any size: in folds that leave with an island these would be many, in
     // vain.
     void join_islands() {
-        const std::vector<std::uint8_t> is_needed = remove_islands({kPromise, kIslandReach});
+        const std::optional<std::vector<Ball>> needed = remove_islands({kPromise, kIslandReach}, true);
         if (!is_wrong()) {
             return;
         }
         RepairStep step{.name = "small balls"};
         least_radius_ = 0.0;
         closes_gaps_alone_ = true;
-        if (!is_needed.empty()) {
-            const std::vector<Ball> around = islands(lands(), is_needed);
-            remove_islands({kIslandReach}, true);
+        if (needed) {
             builder_ = TriangulationBuilder(box_, true);
             moved_.clear();
             critical_.clear();
             settled_.clear();
-            if (!around.empty()) {
-                add_balls_at(points_beside(around), kJoined * samples_.tolerance, step);
+            if (!needed->empty()) {
+                add_balls_at(points_beside(*needed), kJoined * samples_.tolerance, step);
             }
             triangulate();
         }
@@ -357,13 +355,12 @@ class Repair {
     };
 
     // A part of the solid that hangs on a neck too thin for any ball leaves an island. One may go if all points of the
-    // boundary stay this near to the union, in tolerances; it does if the topology is right then, or \p wants_fewer.
-    // Reaches are tried in their order.
-    /// \return those needed at the last reach, see `needed_lands`; none if nothing is left to be done
-    std::vector<std::uint8_t> remove_islands(std::initializer_list<double> reaches, bool wants_fewer = false) {
-        std::vector<std::uint8_t> is_needed;
+    // boundary stay this near to the union, in tolerances; it does if the topology is right then. Reaches are tried in
+    // their order; at the last one islands go whatever the topology if \p wants_fewer.
+    /// \return the balls of those needed at the last reach that was tried, see `islands`; nothing if none was
+    std::optional<std::vector<Ball>> remove_islands(std::initializer_list<double> reaches, bool wants_fewer = false) {
         if (!is_wrong() || topology_.components <= options_.topology->components) {
-            return is_needed;
+            return std::nullopt;
         }
         const Lands all = lands();
         const BallTree shore = build_ball_tree(islands(all));
@@ -375,20 +372,23 @@ class Repair {
                 }
             });
         });
-        for (const double reach : reaches) {
-            is_needed = needed_lands(all, points, reach * samples_.tolerance);
-            if ((wants_fewer || std::ranges::count(is_needed, 1) == options_.topology->components) &&
-                keep_lands(all, is_needed, wants_fewer)) {
+        std::vector<Ball> needed;
+        for (const double& reach : reaches) {
+            const std::vector<std::uint8_t> is_needed = needed_lands(all, points, reach * samples_.tolerance);
+            const bool in_any_case = wants_fewer && &reach == reaches.end() - 1;
+            needed = islands(all, is_needed);
+            if ((in_any_case || std::ranges::count(is_needed, 1) == options_.topology->components) &&
+                keep_lands(all, is_needed, in_any_case)) {
                 std::erase_if(points_, is_beside);
                 append(points_, far_from(points, result_.balls, kNearPoint * samples_.tolerance));
-                return {};
+                break;
             }
         }
-        return is_needed;
+        return needed;
     }
 
     // Takes all other balls away, where that is of use. Is it?
-    bool keep_lands(const Lands& lands, std::span<const std::uint8_t> is_needed, bool wants_fewer) {
+    bool keep_lands(const Lands& lands, std::span<const std::uint8_t> is_needed, bool in_any_case) {
         std::vector<Ball> balls;
         std::vector<Contacts> contacts;
         for (std::size_t i = 0; i < lands.of.size(); ++i) {
@@ -402,7 +402,7 @@ class Repair {
             return false;
         }
         const Topology topology = dual_complex(perturbed(balls, options_.perturbation, options_.seed)).topology;
-        if (!wants_fewer && !agree(*options_.topology, topology)) {
+        if (!in_any_case && !agree(*options_.topology, topology)) {
             return false;
         }
         topology_ = topology;
