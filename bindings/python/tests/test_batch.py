@@ -667,6 +667,14 @@ def test_dask_elsewhere(tmp_path, cluster, kind):
         assert counts.done == 3 and client.status == "running"
 
 
+def test_slots_are_a_hint():
+    class Failing:
+        def nthreads(self):
+            raise AssertionError
+
+    assert runners._window(Failing()) == 16
+
+
 def test_a_cluster_cancels(tmp_path, cluster):
     from distributed import Client, Future
 

@@ -121,7 +121,9 @@ def _reaching() -> Iterator[None]:
 
 def _window(client: Any) -> int:
     """Tasks in flight: so many that no worker waits for the client. Clusters may grow meanwhile."""
-    slots: int = sum(client.nthreads().values())
+    slots = 0
+    with suppress(AssertionError):  # Tornado's own, once in some hundred runs; it is a hint, and the next call asks again
+        slots = sum(client.nthreads().values())
     return max(16, 3 * slots)
 
 
