@@ -13,6 +13,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <random>
 #include <span>
 #include <string>
 #include <utility>
@@ -64,7 +65,7 @@ void expect_in(const std::string& part, const std::string& message) {
 std::string packed(const std::string& content, bool as_gzip) {
     z_stream stream{};
     deflateInit2(&stream, 9, Z_DEFLATED, MAX_WBITS + (as_gzip ? 16 : 0), 9, Z_DEFAULT_STRATEGY);
-    std::string result(content.size() + 1000, '\0');
+    std::string result(deflateBound(&stream, content.size()), '\0');
     std::string copy = content;
     stream.next_in = reinterpret_cast<Bytef*>(copy.data());
     stream.avail_in = static_cast<uInt>(copy.size());
@@ -1254,6 +1255,45 @@ TEST_F(ImageIo, ImagesFromBytes) {
         expect_in("upload: its data are in a file of their own, 'image.raw'", error.what());
         EXPECT_EQ(error.diagnostic().code, "file.unsupported");
     }
+}
+
+// More than the beginning that is read for the head.
+TEST_F(ImageIo, WhatFollowsTheBeginningIsReadFromTheFile) {
+    std::string data(std::size_t{257} * 257 * 257, '\0');
+    std::minstd_rand random(1);
+    for (char& byte : data) {
+        byte = static_cast<char>(random() >> 8U);
+    }
+    const std::string fields = "ElementType = MET_UCHAR\n";
+    std::string inr_file = inr(kInrBytes, data);
+    std::string vol_file = vol("2", data);
+    for (const char axis : {'X', 'Y', 'Z'}) {
+        const std::string size = std::to_string(axis - 'X' + 2);
+        inr_file = changed(inr_file, std::string{axis} + "DIM=" + size + '\n', std::string{axis} + "DIM=257\n");
+        vol_file = changed(vol_file, std::string{axis} + ": " + size, std::string{axis} + ": 257");
+    }
+    inr_file.erase(inr_file.find("\n\n"), 6);  // the head keeps its length
+    const std::string nrrd = changed(kNrrd, "2 3 4", "257 257 257");
+    const std::vector<std::pair<std::string, std::string>> files{
+        {"a.nrrd", nrrd + data},
+        {"gzip.nrrd", changed(nrrd, "raw", "gzip") + packed(data, true)},
+        {"a.mha", changed(meta(fields, data), "2 3 4", "257 257 257")},
+        {"a.nii", nifti(data, {257, 257, 257})},
+        {"a.nii.gz", packed(nifti(data, {257, 257, 257}), true)},
+        {"a.vtk", vtk("BINARY", "257 257 257") + data},
+        {"a.npy", npy("|u1", true, "257, 257, 257", data)},
+        {"c.npy", npy("|u1", false, "257, 257, 257", data)},
+        {"a.inr", inr_file},
+        {"a.vol", vol_file}};
+    for (const auto& [name, content] : files) {
+        SCOPED_TRACE(name);
+        const fs::path file = write(name, content);
+        EXPECT_EQ(file_kind(file), FileKind::kImage);
+        EXPECT_TRUE(read_image(file).values == read_image(FileBytes{std::as_bytes(std::span(content)), name}).values);
+        expect_in("bytes of data, but there are", error_of(name, content.substr(0, content.size() - 100)));
+    }
+    const std::string long_head = changed(nrrd, "\n\n", '\n' + std::string(data.size(), '#') + "\n\n");
+    expect_in("its head does not end in its first 16777216 bytes", error_of("long.nrrd", long_head + data));
 }
 
 TEST_F(ImageIo, PlacesOfNifti) {

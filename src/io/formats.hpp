@@ -90,6 +90,7 @@ std::optional<double> read_ply_scale(std::string_view content);
 /// All numbers of the vertices but coordinates and colours.
 std::vector<VertexValues> read_ply_values(std::string_view content);
 
+/// \param content for most the beginning is enough: what follows is in the file (`data_behind_head`)
 /// \param file with this content, beside which others with data may be; empty: there is none
 using ReadImage = Image(std::string_view content, const std::filesystem::path& file);
 ReadImage read_nrrd_image;   // nearly raw raster data, of the Teem library and 3D Slicer

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <memory>
 #include <system_error>
+#include <utility>
 
 #include "base/faults.hpp"
 #include "base/files.hpp"
@@ -21,12 +22,14 @@ FileError cannot_read(const std::string& what) { return FileError(Diagnostic{"fi
 
 using Stream = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
-/// To its end, which is known for a file, and of a pipe or a device not before it is reached. \param expected bytes
-std::string read_to_end(std::FILE* stream, std::size_t expected) {
+/// To its end, which is known for a file, and of a pipe or a device not before it is reached.
+/// \param content the beginning, which has been read \param expected bytes
+std::string read_to_end(std::FILE* stream, std::string content, std::size_t expected) {
     constexpr std::size_t kLeastRead = std::size_t{1} << 20;
+    std::size_t read = content.size();
     // One byte more than there should be: the end of the file is not known before it is passed.
-    std::string content(expected + 1, '\0');
-    std::size_t read = std::fread(content.data(), 1, content.size(), stream);
+    content.resize(std::max(read, expected) + 1);
+    read += std::fread(content.data() + read, 1, content.size() - read, stream);
     while (read == content.size() && std::feof(stream) == 0 && std::ferror(stream) == 0) {
         content.resize(read + std::max(kLeastRead, read));
         read += std::fread(content.data() + read, 1, content.size() - read, stream);
@@ -57,7 +60,8 @@ std::string advice_for_folder(const std::filesystem::path& folder) {
 
 }  // namespace
 
-std::string read_file(const std::filesystem::path& file) {
+std::string read_file(const std::filesystem::path& file, bool is_enough(std::string_view beginning)) {
+    constexpr std::uintmax_t kBeginning = std::uintmax_t{1} << 24;  // heads with names of segments have some 100 kB
     std::error_code error;
     const std::filesystem::file_status status = std::filesystem::status(file, error);
     if (error) {
@@ -71,12 +75,17 @@ std::string read_file(const std::filesystem::path& file) {
     if (!stream) {
         throw cannot_read(std::generic_category().message(errno));
     }
-    std::uintmax_t size = 0;
-    if (std::filesystem::is_regular_file(status)) {
-        size = std::filesystem::file_size(file);
-        check_size(size);
+    if (!std::filesystem::is_regular_file(status)) {
+        return read_to_end(stream.get(), {}, 0);
     }
-    return read_to_end(stream.get(), size);
+    const std::uintmax_t size = std::filesystem::file_size(file);
+    std::string beginning(static_cast<std::size_t>(std::min(size, kBeginning)), '\0');
+    beginning.resize(std::fread(beginning.data(), 1, beginning.size(), stream.get()));
+    if (is_enough != nullptr && is_enough(beginning)) {
+        return beginning;
+    }
+    check_size(size);
+    return read_to_end(stream.get(), std::move(beginning), static_cast<std::size_t>(size));
 }
 
 bool is_plain_file(const std::filesystem::path& file) {
@@ -93,9 +102,9 @@ std::uintmax_t size_of_file(const std::filesystem::path& file) {
     return size;
 }
 
-ByteSource bytes_of_file(const std::filesystem::path& file) {
+ByteSource bytes_of_file(const std::filesystem::path& file, std::uintmax_t begin) {
     const auto stream = std::make_shared<std::ifstream>(file, std::ios::binary);
-    if (!*stream) {
+    if (!stream->seekg(static_cast<std::streamoff>(begin))) {
         throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(file.filename()) + " cannot be read"});
     }
     return [stream](char* to, std::size_t most) {

@@ -53,6 +53,7 @@ struct Format {
     ReadBalls* read_balls = nullptr;
     ReadAxis* read_axis = nullptr;
     ReadImage* read_image = nullptr;
+    bool is_head_enough = false;  ///< for `read_image`, which reads the rest from the file
     WriteBalls* write_balls = nullptr;
     WriteAxis* write_axis = nullptr;
     WriteMesh* write_mesh = nullptr;
@@ -77,33 +78,46 @@ constexpr Format points(std::string_view extension, IsContent* is_content, ReadP
 }
 
 constexpr Format image(std::string_view extension, IsContent* is_content, ReadImage* read) {
+    return {.extension = extension, .is_content = is_content, .read_image = read, .is_head_enough = true};
+}
+
+/// An image whose reader takes the whole file.
+constexpr Format whole_image(std::string_view extension, IsContent* is_content, ReadImage* read) {
     return {.extension = extension, .is_content = is_content, .read_image = read};
 }
 
 /// All formats. A content is taken for the first that recognises it: any of 84 bytes may be an STL file without facets.
 constexpr std::array kFormats{
-    Format{.extension = ".nrrd", .is_content = is_nrrd, .read_image = read_nrrd_image, .write_image = write_nrrd_image},
+    Format{.extension = ".nrrd",
+           .is_content = is_nrrd,
+           .read_image = read_nrrd_image,
+           .is_head_enough = true,
+           .write_image = write_nrrd_image},
     image(".nhdr", is_nrrd, read_nrrd_image),
-    Format{
-        .extension = ".nii", .is_content = is_nifti, .read_image = read_nifti_image, .write_image = write_nifti_image},
+    Format{.extension = ".nii",
+           .is_content = is_nifti,
+           .read_image = read_nifti_image,
+           .is_head_enough = true,
+           .write_image = write_nifti_image},
     image(".nii.gz", is_nifti, read_nifti_image),
     image(".mha", is_meta_image, read_meta_image),
     image(".mhd", is_meta_image, read_meta_image),
-    image(".tif", is_tiff, read_tiff_image),
-    image(".tiff", is_tiff, read_tiff_image),
+    whole_image(".tif", is_tiff, read_tiff_image),
+    whole_image(".tiff", is_tiff, read_tiff_image),
     Format{.extension = ".vtk",
            .is_content = is_vtk,
            .kind = vtk_kind,
            .read_mesh = read_vtk_surface,
            .read_points = read_vtk_surface_points,
-           .read_image = read_vtk_image},
+           .read_image = read_vtk_image,
+           .is_head_enough = true},
     image(".npy", is_npy, read_npy_image),
-    image(".npz", is_npz, read_npz_image),
-    image(".vti", is_vti, read_vti_image),
+    whole_image(".npz", is_npz, read_npz_image),
+    whole_image(".vti", is_vti, read_vti_image),
     image(".inr", is_inr, read_inr_image),
     image(".inr.gz", is_inr, read_inr_image),
     image(".vol", is_vol, read_vol_image),
-    image(".pgm3d", is_pgm3d, read_pgm3d_image),
+    whole_image(".pgm3d", is_pgm3d, read_pgm3d_image),
     Format{.extension = ".ply",
            .is_content = is_ply,
            .kind = ply_kind,
@@ -308,14 +322,21 @@ void scale_extreme(std::vector<Point>& normals) {
     }
 }
 
+/// Is it the beginning of an image whose reader reads the rest itself?
+bool is_head_enough(std::string_view beginning) {
+    const auto format = std::ranges::find_if(
+        kFormats, [&](const Format& known) { return known.is_content != nullptr && known.is_content(beginning); });
+    return format != kFormats.end() && format->is_head_enough;
+}
+
 /// Every count of elements of a file of at most this size can be held in an `Index`.
 constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
 
 /// Something to be read: where it is from and what is in it.
 struct Source {
     path name;
-    std::string_view content;
-    path file = {};  ///< that may have others with data beside it; empty: there is none
+    std::string_view content;  ///< its beginning only where that is enough
+    path file = {};            ///< that may have others with data beside it; empty: there is none
 };
 
 FileKind kind_of(const Source& source) {
@@ -458,9 +479,9 @@ auto with_name(const std::string& name, const Read& read) {
 
 /// What `of` makes of a file.
 template <class Of>
-auto read_from(const path& file, const Of& of) {
+auto read_from(const path& file, const Of& of, bool is_enough(std::string_view) = nullptr) {
     return with_name(utf8_of(file), [&] {
-        const std::string content = read_file(file);
+        const std::string content = read_file(file, is_enough);
         return of(Source{file, content, is_plain_file(file) ? file : path()});
     });
 }
@@ -510,7 +531,7 @@ std::vector<std::byte> read_bytes(const path& file) {
     });
 }
 
-FileKind file_kind(const path& file) { return read_from(file, kind_of); }
+FileKind file_kind(const path& file) { return read_from(file, kind_of, is_head_enough); }
 FileKind file_kind(const FileBytes& file) { return read_from(file, kind_of); }
 
 std::vector<std::string> input_extensions() {
@@ -568,7 +589,7 @@ std::vector<VertexValues> read_vertex_values(const path& file) {
     });
 }
 
-Image read_image(const path& file) { return read_from(file, image_of); }
+Image read_image(const path& file) { return read_from(file, image_of, is_head_enough); }
 Image read_image(const FileBytes& file) { return read_from(file, image_of); }
 
 void write_balls(const path& file, std::span<const Ball> balls, std::string_view format) {

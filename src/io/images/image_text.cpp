@@ -46,7 +46,7 @@ double positive(const ImageHead& head, std::string_view name) {
 
 bool is_inr(std::string_view content) { return beginning_of(content, kInr.size()) == kInr; }
 
-Image read_inr_image(std::string_view content, const std::filesystem::path&) {
+Image read_inr_image(std::string_view content, const std::filesystem::path& file) {
     constexpr std::size_t kMostOfHead = 64 * kInrHead;
     const std::string head = beginning_of(content, kMostOfHead);
     const std::size_t end = head.find("##}");
@@ -75,7 +75,7 @@ Image read_inr_image(std::string_view content, const std::filesystem::path&) {
     stored.order = cpu == "sun" || cpu == "sgi" ? std::endian::big : std::endian::little;
     stored.packing = is_gzip(content) ? Packing::kZlib : Packing::kNone;
     stored.skipped_bytes = static_cast<std::int64_t>((end + 3 + kInrHead) / kInrHead * kInrHead);  // with a line end
-    stored.parts = {StoredData{content}};
+    stored.parts = {data_behind_head(content, content, file)};
     stored.is_exact = true;
     return read_stored(stored);
 }
@@ -87,14 +87,14 @@ bool is_vol(std::string_view content) {
            ("\n" + std::string(head.substr(0, end))).find("\nX: ") != std::string::npos;
 }
 
-Image read_vol_image(std::string_view content, const std::filesystem::path&) {
+Image read_vol_image(std::string_view content, const std::filesystem::path& file) {
     const std::size_t end = std::min(content.find("\n.\n"), content.size());
     const ImageHead head = head_of(content.substr(0, end), ':');
     StoredImage stored;
     stored.sizes = {head.at("X").integer(1), head.at("Y").integer(1), head.at("Z").integer(1)};
     // Version 2 has the bytes as they are, version 3 packs them. Voxels have no place of their own.
     stored.packing = positive(head, "Version") >= 3 ? Packing::kZlib : Packing::kNone;
-    stored.parts = {StoredData{content.substr(std::min(end + 3, content.size()))}};
+    stored.parts = {data_behind_head(content.substr(std::min(end + 3, content.size())), content, file)};
     stored.is_exact = true;
     return read_stored(stored);
 }

@@ -87,7 +87,8 @@ bool is_meta_image(std::string_view content) {
 
 Image read_meta_image(std::string_view content, const std::filesystem::path& file) {
     constexpr std::int64_t kMostDimensions = 10;
-    const ImageHead head = take_meta_head(content);
+    std::string_view rest = content;
+    const ImageHead head = take_meta_head(rest);
     const auto dimension = static_cast<std::size_t>(head.at("NDims").integer(1, kMostDimensions));
     StoredImage stored;
     stored.sizes = head.at("DimSize").sizes(dimension);
@@ -102,7 +103,8 @@ Image read_meta_image(std::string_view content, const std::filesystem::path& fil
     stored.packing = is_true(head, "CompressedData") ? Packing::kZlib : is_text ? Packing::kText : Packing::kNone;
     stored.skipped_bytes = head.integer("HeaderSize", -1, 0);
     const std::string_view data = head.at("ElementDataFile").value;
-    stored.parts = to_lower(data) == "local" ? std::vector{StoredData{content}} : data_files(data, content, file);
+    stored.parts =
+        to_lower(data) == "local" ? std::vector{data_behind_head(rest, content, file)} : data_files(data, rest, file);
     return read_stored(stored);
 }
 

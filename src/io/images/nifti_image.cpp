@@ -197,7 +197,7 @@ Image read_nifti_image(std::string_view content, const std::filesystem::path& fi
     }
     stored.skipped_bytes =
         head.has_data() ? std::max<std::int64_t>(*offset, static_cast<std::int64_t>(head.size())) : *offset;
-    stored.parts = {StoredData{content}};
+    stored.parts = {data_behind_head(content, content, file)};
     stored.packing = is_gzip(content) ? Packing::kZlib : Packing::kNone;
     if (!head.has_data()) {
         if (file.empty()) {

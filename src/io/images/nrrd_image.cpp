@@ -284,7 +284,8 @@ Packing nrrd_packing(const HeadField& field) {
 bool is_nrrd(std::string_view content) { return content.starts_with("NRRD000"); }
 
 Image read_nrrd_image(std::string_view content, const std::filesystem::path& file) {
-    const ImageHead head = take_nrrd_head(content);
+    std::string_view rest = content;
+    const ImageHead head = take_nrrd_head(rest);
     StoredImage stored;
     read_nrrd_place(head, stored);
     stored.type = nrrd_type(head.at("type"));
@@ -299,7 +300,8 @@ Image read_nrrd_image(std::string_view content, const std::filesystem::path& fil
     stored.skipped_lines = head.integer("lineskip", 0, 0);
     stored.skipped_bytes = head.integer("byteskip", -1, 0);
     const HeadField* data = head.find("datafile");
-    stored.parts = data == nullptr ? std::vector{StoredData{content}} : data_files(data->value, content, file);
+    stored.parts =
+        data == nullptr ? std::vector{data_behind_head(rest, content, file)} : data_files(data->value, rest, file);
     const std::vector<Segment> segments = segments_of(head);
     stored.frame.label_names = names_of(segments);
     const std::int64_t layers = stored.channels;

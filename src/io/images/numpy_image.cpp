@@ -52,7 +52,7 @@ void read_numpy_type(std::string_view value, StoredImage& stored) {
 }
 
 /// The head, and the numbers that follow it.
-StoredImage read_numpy_head(std::string_view content) {
+StoredImage read_numpy_head(std::string_view content, const std::filesystem::path& file = {}) {
     const auto get = [&](std::size_t at, auto zero) -> std::size_t {
         if (content.size() < at + sizeof(zero)) {
             throw truncated("its head does not end");
@@ -81,7 +81,7 @@ StoredImage read_numpy_head(std::string_view content) {
         }
         stored.sizes.push_back(*length);
     }
-    stored.parts = {StoredData{content.substr(begin + size)}};
+    stored.parts = {data_behind_head(content.substr(begin + size), content, file)};
     return stored;
 }
 
@@ -89,8 +89,8 @@ StoredImage read_numpy_head(std::string_view content) {
 
 bool is_npy(std::string_view content) { return content.starts_with(kNumpyMagic); }
 
-Image read_npy_image(std::string_view content, const std::filesystem::path&) {
-    return read_stored(read_numpy_head(content));
+Image read_npy_image(std::string_view content, const std::filesystem::path& file) {
+    return read_stored(read_numpy_head(content, file));
 }
 
 bool is_npz(std::string_view content) {

@@ -30,11 +30,19 @@ std::size_t voxels_of(const StoredImage& stored) {
 
 /// The size of a part as it is stored.
 std::uintmax_t size_of(const StoredData& data) {
-    return data.file.empty() ? data.bytes.size() : size_of_file(data.file);
+    const std::uintmax_t in_file = data.file.empty() ? 0 : size_of_file(data.file);
+    return data.bytes.size() + in_file - std::min(in_file, data.begin);
 }
 
 ByteSource stored_bytes(const StoredData& data) {
-    return data.file.empty() ? bytes_of(data.bytes) : bytes_of_file(data.file);
+    ByteSource beginning = bytes_of(data.bytes);
+    if (data.file.empty()) {
+        return beginning;
+    }
+    return [beginning = std::move(beginning), rest = bytes_of_file(data.file, data.begin)](char* to, std::size_t most) {
+        const std::size_t count = beginning(to, most);
+        return count < most ? count + rest(to + count, most - count) : count;
+    };
 }
 
 /// Two hexadecimal digits a byte, with blanks anywhere.
@@ -179,6 +187,13 @@ std::vector<float> read_text(const StoredImage& stored, std::size_t voxels, std:
 }
 
 }  // namespace
+
+StoredData data_behind_head(std::string_view rest, std::string_view content, const std::filesystem::path& file) {
+    if (rest.empty() && !file.empty() && size_of_file(file) > content.size()) {
+        throw unsupported("its head does not end in its first " + std::to_string(content.size()) + " bytes");
+    }
+    return {rest, file, content.size()};
+}
 
 bool is_of_place(double value) { return std::abs(value) <= kMostOfPlace; }
 

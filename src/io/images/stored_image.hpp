@@ -20,11 +20,16 @@ namespace scaleaxis::io {
 
 enum class Packing { kNone, kZlib, kBzip2, kText, kHex };  // gzip too is kZlib
 
-/// Where numbers are: in memory, or in a file if that has a name.
+/// Where numbers are: in memory, and after these in a file, if that has a name.
 struct StoredData {
     std::string_view bytes;
     std::filesystem::path file = {};
+    std::uintmax_t begin = 0;  ///< in the file
 };
+
+/// The data after a head. \param rest of the content, behind the head
+/// \param content the beginning of the file, or all there is, if the file has no name \throws FileError
+StoredData data_behind_head(std::string_view rest, std::string_view content, const std::filesystem::path& file);
 
 struct StoredImage {
     std::vector<std::int64_t> sizes;  ///< along the axes; those beyond the third have to be 1

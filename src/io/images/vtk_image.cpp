@@ -86,19 +86,20 @@ bool is_vtk_legacy(std::string_view content, std::string_view kind) {
 
 bool is_vtk_image(std::string_view content) { return is_vtk_legacy(content, "structured_points"); }
 
-Image read_vtk_image(std::string_view content, const std::filesystem::path&) {
+Image read_vtk_image(std::string_view content, const std::filesystem::path& file) {
+    std::string_view rest = content;
     bool is_text = false;
     std::size_t number = 0;
-    take_vtk_head(content, "structured_points", is_text, number);
+    take_vtk_head(rest, "structured_points", is_text, number);
     StoredImage stored;
     stored.order = std::endian::big;
     stored.packing = is_text ? Packing::kText : Packing::kNone;
-    while (read_vtk_line(take_vtk_line(content, number), stored)) {
+    while (read_vtk_line(take_vtk_line(rest, number), stored)) {
     }
-    if (to_lower(content.substr(0, 12)) == "lookup_table") {
-        take_line(content);
+    if (to_lower(rest.substr(0, 12)) == "lookup_table") {
+        take_line(rest);
     }
-    stored.parts = {StoredData{content}};
+    stored.parts = {data_behind_head(rest, content, file)};
     return read_stored(stored);
 }
 

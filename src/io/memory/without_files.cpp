@@ -35,10 +35,10 @@ void OutputFile::commit() { written() = std::move(buffer_); }
 
 void check_output_file(const std::filesystem::path&) {}
 
-std::string read_file(const std::filesystem::path& file) { fail_without_files(file); }
+std::string read_file(const std::filesystem::path& file, bool(std::string_view)) { fail_without_files(file); }
 bool is_plain_file(const std::filesystem::path&) { return false; }
 std::uintmax_t size_of_file(const std::filesystem::path& file) { fail_without_files(file); }
-ByteSource bytes_of_file(const std::filesystem::path& file) { fail_without_files(file); }
+ByteSource bytes_of_file(const std::filesystem::path& file, std::uintmax_t) { fail_without_files(file); }
 
 bool is_tiff(std::string_view content) {
     return content.starts_with("II*") || content.starts_with(std::string_view("MM\0*", 4));
