@@ -213,7 +213,7 @@ double smoothing_width(const LoadOptions& options) { return options.mask_smoothi
 /// cut off, which takes much of thin parts.
 void check_volume(const Image& mask, Loading& loading) {
     const auto voxels = static_cast<double>(std::ranges::count_if(mask.values, [](float v) { return v > 0.5F; }));
-    const double volume = ValueVolumes(mask, voxels).above(0.5F);
+    const double volume = volume_above(mask, 0.5F, voxels);
     const double difference = volume - voxels;
     if (std::abs(difference) > kVolumeKept * voxels && std::abs(difference) > volume_uncertainty(mask)) {
         Words text;

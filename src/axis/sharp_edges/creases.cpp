@@ -146,10 +146,12 @@ class CreaseSearch {
                 const bool is_first = search.expected == 0.0;
                 return is_first ? Question{search.at} : question_near(search.at, search.planes[0].point);
             },
-            [](Search& search, const Point& p, const Point& nearest) {
+            [&](Search& search, const Point& p, const Point& nearest) {
                 search.planes[0] = tangent_plane(p, nearest);
                 search.radius = distance(p, nearest);
-                if (!(search.radius > 0.0 && search.radius >= kLeastPart * search.expected)) {
+                // The edge is on the plane, which is no nearer than the contact.
+                if (!(search.radius > 0.0 && search.radius >= kLeastPart * search.expected &&
+                      search.radius <= reach_)) {
                     search.is_active = false;
                     search.is_found = false;
                 }

@@ -68,6 +68,9 @@ void convolve(float* values, Index length, std::size_t stride, std::size_t count
         const float* from = values + std::clamp<Index>(i, 0, length - 1) * stride;
         std::copy_n(from, count, buffer.data() + (i + reach) * count);
     }
+    if (std::ranges::all_of(buffer, [](float value) { return value == 0.0F; })) {
+        return;  // as most of the box of a thin solid that lies askew
+    }
     for (Index i = 0; i < length; ++i) {
         float* to = values + i * stride;
         const float* middle = buffer.data() + (i + reach) * count;
@@ -271,7 +274,7 @@ void smooth(Image& image, const std::vector<float>& weights, const Execution& ex
     report(execution, kMaskStage, 0.3);
     blur(image, weights);
     report(execution, kMaskStage, 0.6);
-    const float level = ValueVolumes(image, inside).level_of(inside);
+    const float level = level_with_volume(image, inside);
     std::atomic<bool> is_mirrored = false;
     for_each_index(image.values.size(), [&](std::size_t i) {
         const float difference = image.values[i] - level;
@@ -282,7 +285,7 @@ void smooth(Image& image, const std::vector<float>& weights, const Execution& ex
         }
     });
     if (is_mirrored) {
-        const float shift = kIso - ValueVolumes(image, inside).level_of(inside);
+        const float shift = kIso - level_with_volume(image, inside);
         for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
     }
 }

@@ -175,11 +175,28 @@ Field field_of(const ImageView& view, const Level& level) {
             const Index j_inside = std::clamp<Index>(j, 0, height - 1);
             const Index k_inside = std::clamp<Index>(k, 0, depth - 1);
             const std::span<const float> row = image.row(j_inside, k_inside, memory);
-            for (Index i = low[0]; i <= high[0]; ++i) {
+            const std::size_t begin = field.values.size();
+            field.values.resize(begin + static_cast<std::size_t>(field.sizes[0]));
+            const auto at = [&](Index i) -> float& {
+                return field.values[begin + static_cast<std::size_t>(i - low[0])];
+            };
+            const auto signed_value = [&](float value) {
                 constexpr float kMost = 1e30F;
-                const float value = std::clamp(sign * (row[std::clamp<Index>(i, 0, width - 1)] - iso), -kMost, kMost);
-                const bool is_beyond = j != j_inside || k != k_inside || i < 0 || i >= width;
-                field.values.push_back(is_beyond ? std::abs(value) : value);
+                return std::clamp(sign * (value - iso), -kMost, kMost);
+            };
+            for (Index i = std::max<Index>(low[0], 0); i <= std::min<Index>(high[0], width - 1); ++i) {
+                at(i) = signed_value(row[i]);
+            }
+            if (low[0] < 0) {
+                at(low[0]) = std::abs(signed_value(row[0]));
+            }
+            if (high[0] >= width) {
+                at(high[0]) = std::abs(signed_value(row[width - 1]));
+            }
+            if (j != j_inside || k != k_inside) {
+                for (Index i = low[0]; i <= high[0]; ++i) {
+                    at(i) = std::abs(at(i));
+                }
             }
         }
     }

@@ -3,12 +3,13 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numeric>
 #include <span>
+#include <vector>
 
 #include "base/parallel.hpp"
 #include "solid/zero_set/trilinear.hpp"
@@ -16,7 +17,8 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr int kValueClasses = 1 << 14;  // a boundary moves by 1e-4 of a voxel from one to the next
+constexpr float kFirstReach =
+    0x1p-5;  // the levels of most masks are nearer to 0.5; others take another look, twice as far
 // The volume is known to this part of itself, a tenth of what masks keep of it. Whether a point of a voxel is inside is
 // random by 1/2 at most, so n points in each of m voxels tell their volume to √(m/n)/2 voxels.
 constexpr double kVolumeError = 0.002;
@@ -66,89 +68,117 @@ class Neighbours {
     const ImageView& image_;
 };
 
-std::size_t class_of(double value) {
-    return static_cast<std::size_t>(std::clamp(value, 0.0, 1.0) * (kValueClasses - 1) + 0.5);
-}
+/// The voxels in which the interpolant may have values of a range, and how many have greater ones throughout.
+struct Crossing {
+    std::vector<std::array<Index, 3>> voxels;
+    std::int64_t above = 0;
+};
 
-}  // namespace
-
-ValueVolumes::ValueVolumes(const ImageView& image, double volume) {
+/// In a voxel the interpolant lies between the values of its 27 neighbours, itself included.
+Crossing crossing_of(const ImageView& image, float lower, float upper) {
     const Neighbours neighbours(image);
     const auto& [width, height, depth] = image.sizes;
-    std::vector<std::uint8_t> is_even(static_cast<std::size_t>(height) * depth);  // of rows: all values are the same
-    for_each_index(is_even.size(), [&, height = height](std::size_t r) {
-        const auto row = neighbours.row(static_cast<Index>(r % height), static_cast<Index>(r / height));
-        is_even[r] = std::ranges::all_of(row, [&](float value) { return value == row[0]; }) ? 1 : 0;
+    using Range = std::ranges::min_max_result<float>;
+    const auto rows = mapped<Range>(static_cast<std::size_t>(height) * depth, [&, height = height](std::size_t r) {
+        return std::ranges::minmax(neighbours.row(static_cast<Index>(r % height), static_cast<Index>(r / height)));
     });
-    std::vector<std::int64_t> in_bulk(depth);
-    const auto mixed = collect<std::vector<std::array<Index, 3>>>(
+    std::vector<std::int64_t> above(depth);
+    Crossing result;
+    result.voxels = collect<std::vector<std::array<Index, 3>>>(
         depth,
         [&, width = width, height = height, depth = depth](Index k, std::vector<std::array<Index, 3>>& out) {
-            std::vector<std::uint8_t> is_column_even(width);  // of the nine voxels around one in the plane across rows
+            std::vector<float> least(width);  // of nine voxels in the plane across rows
+            std::vector<float> most(width);
             for (Index j = 0; j < height; ++j) {
-                std::array<std::span<const float>, 9> rows;
-                bool are_even = true;
+                std::array<std::size_t, 9> around{};
                 for (Index n = 0; n < 9; ++n) {
-                    const Index other_j = std::clamp<Index>(j + n % 3 - 1, 0, height - 1);
-                    const Index other_k = std::clamp<Index>(k + n / 3 - 1, 0, depth - 1);
-                    rows[n] = neighbours.row(other_j, other_k);
-                    are_even = are_even && is_even[static_cast<std::size_t>(other_k) * height + other_j] != 0 &&
-                               rows[n][0] == rows[0][0];
+                    around[n] = static_cast<std::size_t>(std::clamp<Index>(k + n / 3 - 1, 0, depth - 1)) * height +
+                                std::clamp<Index>(j + n % 3 - 1, 0, height - 1);
                 }
-                const std::span<const float> row = neighbours.row(j, k);
-                if (are_even) {
-                    in_bulk[k] += row[0] > 0.5F ? width : 0;
+                Range all = rows[around[0]];
+                for (const std::size_t row : around) {
+                    all = {std::min(all.min, rows[row].min), std::max(all.max, rows[row].max)};
+                }
+                if (all.min > upper || all.max < lower) {
+                    above[k] += all.min > upper ? width : 0;
                     continue;
                 }
-                for (Index i = 0; i < width; ++i) {
-                    is_column_even[i] =
-                        std::ranges::all_of(rows, [&](std::span<const float> other) { return other[i] == row[i]; });
+                const std::span<const float> row = neighbours.row(j, k);
+                least.assign(row.begin(), row.end());
+                most = least;
+                for (const std::size_t other : around) {
+                    const float* values = image.values.data() + other * width;
+                    for (Index i = 0; i < width; ++i) {
+                        least[i] = std::min(least[i], values[i]);
+                        most[i] = std::max(most[i], values[i]);
+                    }
                 }
                 for (Index i = 0; i < width; ++i) {
                     const Index before = std::max<Index>(i - 1, 0);
                     const Index after = std::min<Index>(i + 1, width - 1);
-                    if (is_column_even[before] == 0 || is_column_even[i] == 0 || is_column_even[after] == 0 ||
-                        row[before] != row[i] || row[after] != row[i]) {
+                    if (std::min({least[before], least[i], least[after]}) > upper) {
+                        ++above[k];
+                    } else if (std::max({most[before], most[i], most[after]}) >= lower) {
                         out.push_back({i, j, k});
-                    } else if (row[i] > 0.5F) {
-                        ++in_bulk[k];
                     }
                 }
             }
         },
         Index{1});
+    result.above = std::reduce(above.begin(), above.end());
+    return result;
+}
+
+/// Values of the interpolant at so many points of each voxel, spread evenly, that the volume above any of them is
+/// known.
+struct PointValues {
+    std::vector<float> values;
+    std::int64_t in_voxel = 1;
+};
+
+/// \param volume about that of the solid, in voxels
+PointValues point_values(const ImageView& image, const Crossing& crossing, double volume) {
+    const Neighbours neighbours(image);
     const double error = 2.0 * kVolumeError * std::max(1.0, volume);
-    const double wanted = static_cast<double>(mixed.size()) / (error * error);
-    points_in_voxel_ = static_cast<std::int64_t>(std::ceil(std::clamp<double>(wanted, 1.0, kMostInVoxel)));
-    std::vector<std::atomic<std::int64_t>> counts(kValueClasses);  // sums of integers are the same in any order
-    counts.back() = points_in_voxel_ * std::reduce(in_bulk.begin(), in_bulk.end());
-    for_each_index(mixed.size(), [&](std::size_t m) {
-        const auto& [i, j, k] = mixed[m];
-        for (std::int64_t n = 0; n < points_in_voxel_; ++n) {
-            const Point p = even_point(m * points_in_voxel_ + n);
-            counts[class_of(neighbours.at(i, j, k, p))].fetch_add(1, std::memory_order_relaxed);
-        }
+    const double wanted = static_cast<double>(crossing.voxels.size()) / (error * error);
+    PointValues result;
+    result.in_voxel = static_cast<std::int64_t>(std::ceil(std::clamp<double>(wanted, 1.0, kMostInVoxel)));
+    const std::int64_t points = result.in_voxel;
+    result.values = mapped<float>(crossing.voxels.size() * points, [&](std::size_t n) {
+        const auto& [i, j, k] = crossing.voxels[n / points];
+        return neighbours.at(i, j, k, even_point(n));
     });
-    classes_.assign(counts.begin(), counts.end());
+    return result;
 }
 
-double ValueVolumes::above(float level) const {
-    const auto points = std::reduce(classes_.begin() + static_cast<std::ptrdiff_t>(class_of(level)), classes_.end());
-    return static_cast<double>(points) / static_cast<double>(points_in_voxel_);
+}  // namespace
+
+double volume_above(const ImageView& image, float level, double volume) {
+    const Crossing crossing = crossing_of(image, level, level);
+    const auto [values, in_voxel] = point_values(image, crossing, volume);
+    const auto above = std::ranges::count_if(values, [&](float value) { return value > level; });
+    return static_cast<double>(crossing.above) + static_cast<double>(above) / static_cast<double>(in_voxel);
 }
 
-float ValueVolumes::level_of(double volume) const {
-    auto points = static_cast<std::int64_t>(volume * static_cast<double>(points_in_voxel_));
-    std::size_t upper = kValueClasses - 1;
-    while (upper > 0 && points > classes_[upper]) {
-        points -= classes_[upper--];
+float level_with_volume(const ImageView& image, double volume) {
+    for (float reach = kFirstReach;; reach *= 2.0F) {
+        const float lower = 0.5F - reach;
+        const float upper = 0.5F + reach;
+        const Crossing crossing = crossing_of(image, lower, upper);
+        auto [values, in_voxel] = point_values(image, crossing, volume);
+        const auto points =
+            std::llround((volume - static_cast<double>(crossing.above)) * static_cast<double>(in_voxel));
+        const auto count = std::ssize(values);
+        // The level lies between the last point above it and the first one below.
+        const std::int64_t rank = std::clamp<std::int64_t>(points, 0, count);
+        const auto below = values.begin() + rank;
+        std::ranges::nth_element(values, below, std::greater());
+        const float last = rank > 0 ? *std::min_element(values.begin(), below) : upper;
+        const float next = rank < count ? *below : lower;
+        if (reach >= 0.5F || (rank == points && last >= lower && next <= upper)) {
+            return (std::min(last, upper) + std::max(next, lower)) / 2.0F;
+        }
     }
-    // Amid a range of values that no point has, as those between 0 and 1 where the solid fills the image.
-    std::size_t lower = points < classes_[upper] ? upper : std::max<std::size_t>(upper, 1) - 1;
-    while (lower > 0 && classes_[lower] == 0) {
-        --lower;
-    }
-    return static_cast<float>(upper + lower) / (2 * (kValueClasses - 1));
 }
 
 double volume_uncertainty(const ImageView& mask) {
