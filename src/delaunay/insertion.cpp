@@ -484,8 +484,8 @@ class Worker {
     SphereBatch batch_;
 };
 
-constexpr std::size_t kFewVertices = 2000;  // not worth sharing
-constexpr int kMostWorkers = 100;           // as many as there are marks for
+constexpr std::size_t kFewVertices = 200;  // not worth sharing: half a millisecond, in which threads begin
+constexpr int kMostWorkers = 100;          // as many as there are marks for
 
 /// Any cell, the next from `slot` on.
 Index next_cell(const Cells& c, Index slot) {
