@@ -177,26 +177,22 @@ Field field_of(const ImageView& view, const Level& level) {
             const std::span<const float> row = image.row(j_inside, k_inside, memory);
             const std::size_t begin = field.values.size();
             field.values.resize(begin + static_cast<std::size_t>(field.sizes[0]));
-            const auto at = [&](Index i) -> float& {
-                return field.values[begin + static_cast<std::size_t>(i - low[0])];
-            };
+            const std::span<float> values = std::span(field.values).subspan(begin);
             const auto signed_value = [&](float value) {
                 constexpr float kMost = 1e30F;
                 return std::clamp(sign * (value - iso), -kMost, kMost);
             };
             for (Index i = std::max<Index>(low[0], 0); i <= std::min<Index>(high[0], width - 1); ++i) {
-                at(i) = signed_value(row[i]);
+                values[i - low[0]] = signed_value(row[i]);
             }
             if (low[0] < 0) {
-                at(low[0]) = std::abs(signed_value(row[0]));
+                values.front() = std::abs(signed_value(row[0]));
             }
             if (high[0] >= width) {
-                at(high[0]) = std::abs(signed_value(row[width - 1]));
+                values.back() = std::abs(signed_value(row[width - 1]));
             }
             if (j != j_inside || k != k_inside) {
-                for (Index i = low[0]; i <= high[0]; ++i) {
-                    at(i) = std::abs(at(i));
-                }
+                std::ranges::transform(values, values.begin(), [](float value) { return std::abs(value); });
             }
         }
     }
