@@ -17,8 +17,8 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr float kFirstReach =
-    0x1p-5;  // the levels of most masks are nearer to 0.5; others take another look, twice as far
+// The levels of smoothed masks are nearer to 0.5 than that; others take another look, twice as far.
+constexpr float kFirstReach = 0x1p-4;
 // The volume is known to this part of itself, a tenth of what masks keep of it. Whether a point of a voxel is inside is
 // random by 1/2 at most, so n points in each of m voxels tell their volume to √(m/n)/2 voxels.
 constexpr double kVolumeError = 0.002;
