@@ -171,6 +171,17 @@ TEST(Midsurface, OfAPlateIsARectangle) {
     }
 }
 
+// Here crumbs of the strips into the edges hang on the sheet between the sides: spikes out of it, thin as 0.56.
+TEST(Midsurface, OfALargePlateHasNoSpikesIntoItsEdges) {
+    const Midsurface surface = midsurface_of(box_mesh({0, 0, 0}, {30, 20, 1})).surface;
+    ASSERT_EQ(surface.sheets.size(), 1U);
+    EXPECT_NEAR(area(surface), 600.0, 1.0);
+    EXPECT_GT(surface.sheets[0].min, 0.9);
+    for (const Point& p : surface.mesh.vertices) {
+        EXPECT_NEAR(p.z, 0.5, 0.05);
+    }
+}
+
 TEST(Midsurface, EndsHalfTheThicknessBeforeTheRimIfItIsNotExtended) {
     const Midsurface surface = midsurface_of(box_mesh({0, 0, 0}, {10, 6, 1}), 0.01, {.extends = false}).surface;
     ASSERT_EQ(surface.sheets.size(), 1U);

@@ -9,6 +9,7 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
+#include <ranges>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -51,6 +52,10 @@ constexpr double kTangentReach = 0.5;
 // How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
 // are longer run along a wall, as where the free edge of a rib ends in it.
 constexpr double kFarthest = 1.6;
+// A wall floods no face that has a vertex with a radius below this part of its own: from a wall balls grow towards
+// junctions, and what shrinks runs into a convex edge. At 0.5 plates get spikes, thin as that; radii differ by some
+// hundredths in one wall.
+constexpr double kDescent = 0.9;
 // Where directions around a vertex of the border cancel out more than this there is no way on.
 constexpr double kLeastAgreement = 0.3;
 
@@ -156,8 +161,12 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
         }
     });
     std::vector<double> radii(complex.faces.size());
-    // Whether the flood has crossed a seam, its level, the face that it enters, and whether it comes from a wall.
-    using Entry = std::tuple<bool, double, Index, bool>;
+    const auto least_radius = [&](Index f) {
+        return std::ranges::min(complex.faces[f] | std::views::transform([&](Index v) { return complex.radii[v]; }));
+    };
+    // Whether the flood has crossed a seam, its level, the face that it enters, and the radius of the wall that it
+    // comes from, if any.
+    using Entry = std::tuple<bool, double, Index, double>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
     for (Index f = 0; f < count; ++f) {
         radii[f] = mean_ball(complex, complex.faces[f]).radius;
@@ -165,24 +174,25 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
             return at_edge[e].size() == 1 && mean_ball(complex, complex.edges[e]).radius < radii[f];
         };
         if (is_core[f] != 0 || std::ranges::any_of(complex.face_edges[f], is_outlet)) {
-            front.emplace(false, radii[f], f, is_core[f] != 0);
+            front.emplace(false, radii[f], f, is_core[f] != 0 ? radii[f] : 0.0);
         }
     }
     Flags is_flooded(is_core);
     Flags result(is_core);
     while (!front.empty()) {
-        const auto [has_crossed, level, f, is_wall] = front.top();
+        const auto [has_crossed, level, f, wall] = front.top();
         front.pop();
         if (is_flooded[f] != 0 && is_core[f] == 0) {
             continue;
         }
         is_flooded[f] = 1;
-        result[f] = is_wall ? 1 : 0;
+        result[f] = wall > 0.0 ? 1 : 0;
         for (const Index e : complex.face_edges[f]) {
             for (const Index neighbor : at_edge[e]) {
                 const bool crosses = has_crossed || at_edge[e].size() > 2;
-                if (is_flooded[neighbor] == 0 && (is_wall || !crosses)) {
-                    front.emplace(crosses, std::max(level, radii[neighbor]), neighbor, is_wall);
+                const bool enters = wall > 0.0 ? least_radius(neighbor) >= kDescent * wall : !crosses;
+                if (is_flooded[neighbor] == 0 && enters) {
+                    front.emplace(crosses, std::max(level, radii[neighbor]), neighbor, wall);
                 }
             }
         }
