@@ -841,6 +841,32 @@ TEST(MeshSolid, PartsThatShareAFaceAreOne) {
     }
 }
 
+// As assemblies in a file of STL: rounding leaves gaps and overlaps of some 1e-7 between the parts, which made hundreds
+// of tunnels, and of boxes with all corners of the face in common two solids.
+TEST(MeshSolid, PartsThatShareAFaceAreOneInSinglePrecision) {
+    const TriangleMesh half = box_mesh({0, 0, 0}, {1, 1, 1});
+    const std::vector<NamedMesh> cases{
+        {"halves", together({half, moved(half, {1, 0, 0})})},
+        {"a tower", together({box_mesh({0, 0, 0}, {3, 3, 1}), box_mesh({0.5, 0.5, 1}, {2.5, 2.5, 2}),
+                              box_mesh({1, 1.2, 2}, {1.5, 2, 3})})},
+        {"side by side", together({half, moved(half, {1, 0.4, 0.3})})},
+    };
+    for (const NamedMesh& named : cases) {
+        for (const double angle : {0.5, 1.0, 2.0, 2.5}) {
+            TriangleMesh mesh = named.mesh;
+            for (Point& p : mesh.vertices) {
+                const double c = std::cos(angle), s = std::sin(angle);
+                p = {c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+                p = {static_cast<float>(p.x), static_cast<float>(c * p.y - s * p.z),
+                     static_cast<float>(s * p.y + c * p.z)};
+            }
+            const ScaleAxis axis = scale_axis(*mesh_solid(mesh), {.delta = Length::relative(0.03), .scales = {1.0}});
+            EXPECT_EQ(axis.axes.at(0).medial_statistics.dual_complex, (Topology{1, 1, 0, 0})) << named.name << angle;
+            EXPECT_EQ(axis.solid_topology.value_or(Topology{1, 1, 0, 0}), (Topology{1, 1, 0, 0})) << named.name;
+        }
+    }
+}
+
 TEST(MeshSolid, ReportsProgressAndStops) {
     const TriangleMesh mesh = together({sphere_mesh({0, 0, 0}, 1.0, 4), sphere_mesh({1, 0, 0}, 1.0, 4)});
     expect_progress_and_cancellation([&](const Execution& execution) { repair(mesh, execution); });

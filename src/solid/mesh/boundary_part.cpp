@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "base/parallel.hpp"
 #include "solid/mesh/winding.hpp"
@@ -15,8 +16,13 @@ namespace {
 // Points nearer than this (fraction of the diagonal of the box) to a plane or a line lie in it.
 constexpr double kOnTrianglePlane = 1e-10;
 
-// And so far beside a segment the pieces on both sides of it are looked at.
+// And so far beside a segment the pieces on both sides of it are looked at; where there are gaps, ten of them.
 constexpr double kBeside = 1e-7;
+constexpr double kGapsBeside = 10.0;
+
+// Walls that touch are no farther apart (fraction of the diagonal of the box): single precision moves planes askew to
+// the axes by up to 3e-7 of it, in a box as far from the origin as it is large. A tenth of the least δ.
+constexpr double kContact = 1e-6;
 
 /// A point of a triangle's plane.
 struct Flat {
@@ -206,21 +212,58 @@ class Cuts {
     std::vector<FlatSegment> segments_;
 };
 
+/// The area that a triangle has in common with another one, which is projected to its plane.
+double common_area(const FlatTriangle& triangle, const std::array<Flat, 3>& other) {
+    std::vector<Flat> part(other.begin(), other.end());
+    for (int k = 0; k < 3; ++k) {
+        const Flat& corner = triangle.corners[k];
+        const Flat side = triangle.corners[(k + 1) % 3] - corner;
+        std::vector<Flat> clipped;
+        for (std::size_t i = 0; i < part.size(); ++i) {
+            const Flat& p = part[i];
+            const Flat& q = part[(i + 1) % part.size()];
+            const double at_p = cross(side, p - corner), at_q = cross(side, q - corner);
+            if (at_p >= 0.0) {
+                clipped.push_back(p);
+            }
+            if ((at_p >= 0.0) != (at_q >= 0.0)) {
+                clipped.push_back(p + (at_p / (at_p - at_q)) * (q - p));
+            }
+        }
+        part = std::move(clipped);
+    }
+    double area = 0.0;
+    for (std::size_t i = 0; i < part.size(); ++i) {
+        area += 0.5 * cross(part[i], part[(i + 1) % part.size()]);
+    }
+    return std::abs(area);
+}
+
+/// How far the corners of triangle `t` are from a plane, at most.
+double farthest_corner(const TriangleMesh& mesh, Index t, const FlatTriangle& plane) {
+    double farthest = 0.0;
+    for (const Index v : mesh.triangles[t]) {
+        farthest = std::max(farthest, std::abs(plane.height(mesh.vertices[v])));
+    }
+    return farthest;
+}
+
 /// A cut triangle.
 struct CutTriangle {
     Share share = Share::kNothing;
     std::vector<std::array<Point, 2>> borders;
 };
 
-CutTriangle cut_triangle(const Bvh& bvh, const Box& box, Index t) {
+CutTriangle cut_triangle(const Bvh& bvh, const Box& box, Index t, double gap) {
     const std::optional<FlatTriangle> flat = flat_triangle(bvh.mesh, t);
     if (!flat) {
         return {};  // its neighbours have all of its points
     }
-    const auto is_on_boundary = [&](const Flat& p) { return is_boundary_at(bvh, box, t, flat->at(p)); };
-    const double step = kBeside * box.diagonal();
+    const auto is_on_boundary = [&](const Flat& p) { return is_boundary_at(bvh, box, t, flat->at(p), gap); };
+    const double step = std::max(kBeside * box.diagonal(), kGapsBeside * gap);
+    const double tolerance = std::max(kOnTrianglePlane * box.diagonal(), gap);
     CutTriangle result;
-    for (const FlatSegment& segment : Cuts(bvh, t, *flat, kOnTrianglePlane * box.diagonal()).divided()) {
+    for (const FlatSegment& segment : Cuts(bvh, t, *flat, tolerance).divided()) {
         const Flat middle = segment.at(0.5);
         const Flat d = segment.end - segment.begin;
         const Flat beside = (step / norm(d)) * Flat{-d.y, d.x};
@@ -251,7 +294,7 @@ CutTriangle cut_triangle(const Bvh& bvh, const Box& box, Index t) {
 
 }  // namespace
 
-BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut,
+BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut, double gap,
                            const Patches& patches) {
     const std::size_t count = bvh.mesh.triangles.size();
     BoundaryPart result;
@@ -265,7 +308,7 @@ BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std
                 return;
             }
             stop_if_cancelled();
-            const CutTriangle cut = cut_triangle(bvh, box, static_cast<Index>(i));
+            const CutTriangle cut = cut_triangle(bvh, box, static_cast<Index>(i), gap);
             result.shares[i] = cut.share;
             append(out, cut.borders);
         },
@@ -275,6 +318,62 @@ BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std
         result.borders.vertices.push_back(begin);
         result.borders.vertices.push_back(end);
         result.borders.triangles.push_back({first, first + 1, first + 1});
+    }
+    return result;
+}
+
+Contacts find_contacts(const Bvh& bvh, const Box& box) {
+    const TriangleMesh& mesh = bvh.mesh;
+    const double reach = kContact * box.diagonal();
+    struct Contact {
+        Index triangle = kNone;
+        double gap = 0.0;
+    };
+    const auto contacts = collect<std::vector<Contact>>(
+        mesh.triangles.size(),
+        [&](std::size_t i, std::vector<Contact>& out) {
+            const auto t = static_cast<Index>(i);
+            const std::optional<FlatTriangle> flat = flat_triangle(mesh, t);
+            if (!flat) {
+                return;
+            }
+            Box around = box_of_triangle(mesh, t);
+            around = {around.min - Point{reach, reach, reach}, around.max + Point{reach, reach, reach}};
+            for_each_near_box(bvh, around, [&](Index other) {
+                const auto& [u, v, w] = mesh.triangles[other];
+                const std::vector<Point>& p = mesh.vertices;
+                if (scaleaxis::dot(flat->normal, cross(p[v] - p[u], p[w] - p[u])) >= 0.0 ||
+                    !overlap(box_of_triangle(mesh, other), around)) {
+                    return;
+                }
+                const std::optional<FlatTriangle> beside = flat_triangle(mesh, other);
+                if (!beside) {
+                    return;
+                }
+                // The plane of the smaller one may be far off at the corners of the larger one.
+                const double gap = std::min(farthest_corner(mesh, other, *flat), farthest_corner(mesh, t, *beside));
+                if (gap > reach) {
+                    return;
+                }
+                std::array<Flat, 3> corners;
+                double longest = 0.0;
+                for (int k = 0; k < 3; ++k) {
+                    corners[k] = flat->flat(mesh.vertices[mesh.triangles[other][k]]);
+                    longest = std::max(longest, norm(corners[k] - corners[(k + 2) % 3]));
+                }
+                if (common_area(*flat, corners) > reach * longest) {
+                    out.push_back({t, gap});
+                }
+            });
+        },
+        std::size_t{256});
+    Contacts result;
+    if (!contacts.empty()) {
+        result.is_touching.resize(mesh.triangles.size());
+    }
+    for (const auto& [triangle, gap] : contacts) {
+        result.is_touching[triangle] = 1;
+        result.gap = std::max(result.gap, gap);
     }
     return result;
 }

@@ -26,10 +26,19 @@ struct BoundaryPart {
 
 /// \param box of the surface
 /// \param is_cut #F: does another triangle meet or touch it? empty: none does
+/// \param gap sheets no farther apart are one
 /// \param patches of the triangles that are not cut
 ///
-/// Segments are computed with rounding, and pieces narrower than 10⁻⁷ of the box may be taken for others.
-BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut,
+/// Segments are computed with rounding, and pieces narrower than 10⁻⁷ of the box, or ten gaps, may be taken for others.
+BoundaryPart boundary_part(const Bvh& bvh, const Box& box, const std::vector<std::uint8_t>& is_cut, double gap,
                            const Patches& patches);
+
+/// Triangles that lie on each other face to face up to rounding, as the walls of parts that touch do.
+struct Contacts {
+    std::vector<std::uint8_t> is_touching;  ///< #F; empty: none does
+    double gap = 0.0;                       ///< no two are farther apart: a length, 0 where coordinates are not rounded
+};
+
+Contacts find_contacts(const Bvh& bvh, const Box& box);
 
 }  // namespace scaleaxis::inline v1

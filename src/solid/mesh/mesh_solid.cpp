@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
@@ -67,43 +67,21 @@ struct Boundary {
     bool is_whole_surface = false;  ///< all of it bounds the solid; then what follows is left out
 
     Patches patches;
+    double gap = 0.0;                       ///< between walls that touch, at most
     std::vector<std::uint8_t> is_cut;       ///< #F: does another triangle meet or touch it? empty: none does
     std::vector<Index> triangle_of_vertex;  ///< #V: one of its triangles
 };
 
-/// Marks triangles as cut where they touch others up to rounding, as the walls of parts that share a face askew to the
-/// axes do: whether exact arithmetic finds a gap there or an intersection is chance.
-void mark_touching(const Bvh& bvh, const Box& box, std::vector<std::uint8_t>& is_cut) {
-    const double reach = kSamePlaceOnWayOut * box.diagonal();
-    const auto mark = [&](Index t) { std::atomic_ref(is_cut[t]).store(1, std::memory_order_relaxed); };
-    for_each_index(
-        is_cut.size(),
-        [&](std::size_t i) {
-            const auto t = static_cast<Index>(i);
-            const auto& [u, v, w] = bvh.mesh.triangles[i];
-            const std::vector<Point>& p = bvh.mesh.vertices;
-            const Point normal = cross(p[v] - p[u], p[w] - p[u]);
-            const double length = norm(normal);
-            if (!(length > 0.0)) {
-                return;
-            }
-            const Point center = (1.0 / 3.0) * (p[u] + p[v] + p[w]);
-            const Point step = (reach / length) * normal;
-            for_each_crossing(bvh, center - step, center + step, [&](Index other, const SegmentCrossing&) {
-                if (other != t) {
-                    mark(t);
-                    mark(other);
-                }
-            });
-        },
-        std::size_t{256});
-}
-
-Boundary find_boundary(const Bvh& bvh, const Box& box, bool intersects_itself) {
+Boundary find_boundary(const Bvh& bvh, const Box& box, const MeshReport& report) {
     Boundary boundary;
     const Patches components = find_patches(bvh, box, {});
     boundary.landmarks = find_landmarks(components);
-    if (!intersects_itself) {
+    // Whether exact arithmetic finds a gap or an intersection between walls that touch askew to the axes is chance.
+    const bool has_parts =
+        components.patches.size() > 1 || report.self_intersections > 0 || report.non_manifold_edges > 0;
+    Contacts contacts = has_parts ? find_contacts(bvh, box) : Contacts{};
+    const bool meets_itself = report.self_intersections > 0 || !contacts.is_touching.empty();
+    if (!meets_itself) {
         const auto bounds_solid = [](const Patch& component) { return is_boundary(component.winding_outside); };
         boundary.topology = solid_topology(components.patches);
         boundary.is_whole_surface = std::all_of(components.patches.begin(), components.patches.end(), bounds_solid);
@@ -111,9 +89,12 @@ Boundary find_boundary(const Bvh& bvh, const Box& box, bool intersects_itself) {
     if (boundary.is_whole_surface) {
         return boundary;
     }
-    if (intersects_itself) {
-        boundary.is_cut = self_intersections(bvh).is_cut;
-        mark_touching(bvh, box, boundary.is_cut);
+    if (meets_itself) {
+        boundary.gap = contacts.gap;
+        boundary.is_cut = std::move(contacts.is_touching);
+        const std::vector<std::uint8_t> is_crossed = self_intersections(bvh).is_cut;
+        boundary.is_cut.resize(is_crossed.size());
+        std::ranges::transform(is_crossed, boundary.is_cut, boundary.is_cut.begin(), std::bit_or<>());
     }
     boundary.patches = find_patches(bvh, box, boundary.is_cut);
     boundary.triangle_of_vertex.resize(bvh.mesh.vertices.size());
@@ -130,6 +111,7 @@ struct Hit {
     double position = 0.0;
     int sign = 0;
     Point point;
+    double across = 0.0;  ///< how much of the segment may lie between walls that touch here
 };
 
 /// The places where a segment enters or leaves the solid, out of all where it crosses the surface.
@@ -140,7 +122,7 @@ std::vector<Hit> boundary_hits(std::vector<Hit> hits, int winding_at_end) {
     for (std::size_t i = 0; i < hits.size();) {
         const Hit& first = hits[i];
         const int before = winding;
-        for (; i < hits.size() && first.position - hits[i].position <= kSamePlace; ++i) {
+        for (; i < hits.size() && first.position - hits[i].position <= std::max(kSamePlace, first.across); ++i) {
             winding += hits[i].sign;
         }
         if ((before == 0) != (winding == 0)) {
@@ -176,7 +158,7 @@ class MeshSolid final : public PointwiseSolid {
     MeshSolid(TriangleMesh mesh, const MeshReport& report)
         : bvh_(build_bvh(std::move(mesh))),
           box_(box_around(bvh_.mesh.vertices)),
-          boundary_(find_boundary(bvh_, box_, report.self_intersections > 0)),
+          boundary_(find_boundary(bvh_, box_, report)),
           warnings_(report.warnings()) {}
 
     Box bounds() const override { return box_; }
@@ -198,7 +180,8 @@ class MeshSolid final : public PointwiseSolid {
             const auto& [u, v, w] = bvh_.mesh.triangles[t];
             const std::vector<Point>& p = bvh_.mesh.vertices;
             hits.push_back({crossing.position, crossing.sign,
-                            crossing.weights[0] * p[u] + crossing.weights[1] * p[v] + crossing.weights[2] * p[w]});
+                            crossing.weights[0] * p[u] + crossing.weights[1] * p[v] + crossing.weights[2] * p[w],
+                            way_across(t, outside_end - inside_end)});
         });
         if (!boundary_.is_whole_surface) {
             hits = boundary_hits(std::move(hits), winding_number(bvh_, box_, outside_end));
@@ -297,6 +280,18 @@ class MeshSolid final : public PointwiseSolid {
     std::vector<Diagnostic> warnings() const override { return warnings_; }
 
    private:
+    /// How much of a segment may lie between triangle `t` and one that touches it; twice that for rounding.
+    double way_across(Index t, const Point& segment) const {
+        if (!(boundary_.gap > 0.0) || boundary_.is_cut[t] == 0) {
+            return 0.0;
+        }
+        constexpr double kLeastCosine = 1e-3;  // flatter segments end before they get across
+        const auto& [u, v, w] = bvh_.mesh.triangles[t];
+        const std::vector<Point>& p = bvh_.mesh.vertices;
+        const double cosine = std::abs(dot(unit(segment), unit(cross(p[v] - p[u], p[w] - p[u]))));
+        return 2.0 * boundary_.gap / (norm(segment) * std::max(cosine, kLeastCosine));
+    }
+
     /// The triangles that have all edges this sharp as sides, and others: those with two corners around which the
     /// surface turns by half the angle or more from the normal of the first triangle there.
     template <class NormalOf>
@@ -327,7 +322,7 @@ class MeshSolid final : public PointwiseSolid {
             const Index patch = boundary_.patches.of_vertex[bvh_.mesh.triangles[t][0]];
             return is_boundary(boundary_.patches.patches[patch].winding_outside);
         }
-        return is_boundary_at(bvh_, box_, t, p);
+        return is_boundary_at(bvh_, box_, t, p, boundary_.gap);
     }
 
     /// The same at a point nearby that is not on a side of the triangle.
@@ -343,7 +338,7 @@ class MeshSolid final : public PointwiseSolid {
             NearestSearch search;
             search.bounds = triangle_bounds(bvh_);
             if (!boundary_.is_whole_surface) {
-                BoundaryPart part = boundary_part(bvh_, box_, boundary_.is_cut, boundary_.patches);
+                BoundaryPart part = boundary_part(bvh_, box_, boundary_.is_cut, boundary_.gap, boundary_.patches);
                 search.shares = std::move(part.shares);
                 if (!part.borders.triangles.empty()) {
                     search.borders = build_bvh(std::move(part.borders));

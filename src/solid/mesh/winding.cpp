@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "solid/mesh/winding.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -130,14 +131,16 @@ int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point&
     return winding;
 }
 
-bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p) {
+bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p, double gap) {
     const Point end = beyond_outer_side(bvh, box, t, p);
-    const Point start = p - kSamePlaceOnWayOut * (end - p);
+    // The way out is askew to the triangle by up to 60 degrees.
+    const double across = std::max(kSamePlaceOnWayOut, 2.0 * gap / distance(p, end));
+    const Point start = p - across * (end - p);
     int outside = 0;
     int inside = 1;  // in addition to `outside`; `t` itself counts whatever rounding does
     for_each_crossing(bvh, start, end, [&](Index other, const SegmentCrossing& crossing) {
         if (other != t) {
-            (crossing.position > 2.0 * kSamePlace ? outside : inside) += crossing.sign;
+            (crossing.position > 2.0 * std::max(kSamePlace, across) ? outside : inside) += crossing.sign;
         }
     });
     return (outside == 0) != (outside + inside == 0);

@@ -71,7 +71,7 @@ int winding_number_outside(const Bvh& bvh, const Box& box, Index t, const Point&
 inline bool is_boundary(int winding_outside) { return (winding_outside == 0) != (winding_outside + 1 == 0); }
 
 /// Is the solid on just one side of the surface at point `p` of triangle `t`? All sheets that pass through `p` count as
-/// one: the two walls of parts that touch bound nothing.
-bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p);
+/// one, and so do those no farther away than `gap`: the two walls of parts that touch bound nothing.
+bool is_boundary_at(const Bvh& bvh, const Box& box, Index t, const Point& p, double gap);
 
 }  // namespace scaleaxis::inline v1

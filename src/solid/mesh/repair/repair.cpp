@@ -142,7 +142,8 @@ bool bounds_anything(const Bvh& bvh, const Box& box) {
     const std::vector<Point>& p = bvh.mesh.vertices;
     for (Index t = 0; t < static_cast<Index>(bvh.mesh.triangles.size()); ++t) {
         const auto& [u, v, w] = bvh.mesh.triangles[t];
-        if (!has_no_area(p, bvh.mesh.triangles[t]) && is_boundary_at(bvh, box, t, (1.0 / 3.0) * (p[u] + p[v] + p[w]))) {
+        if (!has_no_area(p, bvh.mesh.triangles[t]) &&
+            is_boundary_at(bvh, box, t, (1.0 / 3.0) * (p[u] + p[v] + p[w]), 0.0)) {
             return true;
         }
     }
