@@ -466,6 +466,19 @@ TEST_F(SceneIo, CountsPointsAndLines) {
     EXPECT_EQ(load_solid(file).warnings[0].code, "mesh.no_faces");
 }
 
+TEST_F(SceneIo, TellsThatBonesAndShapeKeysAreNotApplied) {
+    const std::string json = gltf("");
+    for (const auto& [what, with] :
+         {std::pair{"\"mesh\":0", "\"mesh\":0,\"skin\":0"}, {"\"mesh\":0", "\"mesh\":0,\"weights\":[0,1]"}}) {
+        const MeshObjects read = read_objects(write("a.glb", glb(replaced(json, what, with))));
+        ASSERT_EQ(read.warnings.size(), 1u) << with;
+        EXPECT_EQ(read.warnings[0].code, "mesh.pose");
+        EXPECT_TRUE(read.warnings[0].message.starts_with("1 mesh has bones")) << read.warnings[0].message;
+    }
+    const std::string at_rest = replaced(json, "\"mesh\":0", "\"mesh\":0,\"weights\":[0,0]");
+    EXPECT_TRUE(read_objects(write("a.glb", glb(at_rest))).warnings.empty());
+}
+
 TEST_F(SceneIo, DamagedGltfIsAnErrorInOneLine) {
     const std::string whole = glb();
     for (std::size_t length = 1; length < whole.size(); ++length) {

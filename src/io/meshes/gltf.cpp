@@ -22,6 +22,7 @@
 #include "base/files.hpp"
 #include "base/formats/base64.hpp"
 #include "base/formats/json.hpp"
+#include "base/text.hpp"
 #include "base/vectors.hpp"
 #include "io/formats.hpp"
 #include "io/input_file.hpp"
@@ -546,12 +547,21 @@ std::vector<Eigen::Affine3d> places_of(const PlacedNode& placed, Asset& asset) {
     return result;
 }
 
+/// Is the mesh of a node drawn in another shape than it is stored in?
+bool is_posed(const Element& node, const Element& mesh) {
+    const std::vector<Element> weights = list(member(node, "weights") ? node : mesh, "weights");
+    return member(node, "skin") || std::ranges::any_of(weights, [](const Element& weight) {
+               return weight.json->is_number() && weight.json->get<double>() != 0.0;
+           });
+}
+
 PolygonObjects objects_of(Asset& asset) {
     PolygonObjects result;
     std::map<std::uint64_t, Mesh> meshes;
     std::uint64_t corners = 0;  // and vertices
     std::uint64_t points = 0;
     std::uint64_t lines = 0;
+    std::int64_t posed = 0;
     for (const PlacedNode& placed : placed_nodes(asset)) {
         const std::optional<std::uint64_t> index = integer(placed.node, "mesh");
         if (!index) {
@@ -562,6 +572,7 @@ PolygonObjects objects_of(Asset& asset) {
             found = meshes.emplace(*index, read_mesh(*index, asset)).first;
         }
         const Mesh& mesh = found->second;
+        posed += is_posed(placed.node, asset.item("meshes", "mesh", *index)) ? 1 : 0;
         for (const Eigen::Affine3d& place : places_of(placed, asset)) {
             points += mesh.points;
             lines += mesh.lines;
@@ -576,6 +587,11 @@ PolygonObjects objects_of(Asset& asset) {
     if (points + lines > 0) {
         result.warnings.push_back({"mesh.no_faces", std::to_string(points) + " points and " + std::to_string(lines) +
                                                         " lines are left out, which bound no solid"});
+    }
+    if (posed > 0) {
+        result.warnings.push_back({"mesh.pose", counted(posed, "mesh has", "meshes have") +
+                                                    " bones or shape keys, which are not applied: place and size may "
+                                                    "be others; apply them before export, as in Blender"});
     }
     return result;
 }
