@@ -42,7 +42,8 @@ def _of_pyvista(given: Any) -> Mesh | PointCloud | Image:
         is_of_cells = len(scalars) != given.n_points
         sizes = [n - 1 if is_of_cells else n for n in given.dimensions]
         steps = np.asarray(given.direction_matrix) * np.asarray(given.spacing)
-        origin = np.asarray(given.origin) + (steps.sum(axis=1) / 2 if is_of_cells else 0.0)  # the middle of a cell
+        first = np.asarray(given.extent[::2]) + (0.5 if is_of_cells else 0.0)  # not 0 in parts; the middle of a cell
+        origin = np.asarray(given.origin) + steps @ first
         return Image(np.asarray(scalars).reshape(sizes, order="F"), origin, steps.T)
     surface = given if hasattr(given, "is_all_triangles") else _surface_of_grid(given)
     triangles = (surface if surface.is_all_triangles else surface.triangulate()).faces
