@@ -9,7 +9,6 @@
 #include <numbers>
 #include <numeric>
 #include <queue>
-#include <ranges>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -162,7 +161,8 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
     });
     std::vector<double> radii(complex.faces.size());
     const auto least_radius = [&](Index f) {
-        return std::ranges::min(complex.faces[f] | std::views::transform([&](Index v) { return complex.radii[v]; }));
+        return complex
+            .radii[*std::ranges::min_element(complex.faces[f], {}, [&](Index v) { return complex.radii[v]; })];
     };
     // Whether the flood has crossed a seam, its level, the face that it enters, and the radius of the wall that it
     // comes from, if any.
