@@ -28,12 +28,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Of the diagonal: a point less deep than this counts as one of the boundary.
-constexpr double kEnvelopeRounding = 1e-9;
-
-// Of the diagonal: balls smaller than this stand for sharp edges.
-constexpr double kSharp = 1e-6;
-
 // Of the diagonal of the vertices: how far radii may be from linear ones.
 constexpr double kLinearTolerance = 1e-4;
 
@@ -117,7 +111,7 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
 // false only if that is so for no direction that differs from this one by no more.
 bool EnvelopeData::is_exposed(const Part& part, const Point& direction, double within) const {
     for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
-        if (dot(direction, part.ways_on[k]) + part.growth[k] > kEnvelopeRounding + within) {
+        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRelativeRounding + within) {
             return false;
         }
     }
@@ -217,7 +211,8 @@ double EnvelopeData::distance_to_contact(const Point& p) const {
     return covering(contact) != nullptr ? distance : -distance;
 }
 
-double EnvelopeData::depth() const { return kEnvelopeRounding * bounds_.diagonal(); }
+// A point less deep than this counts as one of the boundary.
+double EnvelopeData::depth() const { return kRelativeRounding * bounds_.diagonal(); }
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
@@ -227,7 +222,7 @@ double EnvelopeData::typical_radius() const {
 }
 
 std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
-    const double sharp = kSharp * bounds_.diagonal();
+    const double sharp = kFileRounding * bounds_.diagonal();  // smaller balls stand for sharp edges
     std::vector<std::array<Point, 2>> creases;
     for (const Part& part : parts_) {
         const auto& [a, b, unused] = part.slab.corners;

@@ -15,6 +15,11 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 
+/// Relative errors: of lengths computed in double precision, some thousand roundings of 1e-16 and the cancellation in
+/// squares; and of coordinates from files of single precision, as STL, where places as near to each other are the same.
+inline constexpr double kRelativeRounding = 1e-9;
+inline constexpr double kFileRounding = 1e-6;
+
 /// The larger of two in the middle. \param values not empty
 inline double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "balls/dual_complex.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
@@ -21,9 +22,6 @@
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-// Distances are those of balls that have been rounded down.
-constexpr double kDeltaRounding = 1e-9;
 
 /// A tolerance, and the union that it led to.
 struct Candidate {
@@ -45,7 +43,7 @@ std::vector<double> deltas_of(const DeltaRange& range) {
     for (int i = 0;; ++i) {
         const double delta =
             range.coarsest.value() * std::ldexp(i % 2 == 0 ? 1.0 : 0.5 * std::numbers::sqrt2, -(i / 2));
-        if (delta <= (1.0 + kDeltaRounding) * range.finest.value()) {
+        if (delta <= (1.0 + kRelativeRounding) * range.finest.value()) {
             deltas.push_back(range.finest.value());
             return deltas;
         }
@@ -77,7 +75,7 @@ Diagnostic fault_of(const DeltaAttempt& attempt) {
              << in_words(*attempt.solid);
         return {"delta.topology", text.str()};
     }
-    if (attempt.largest_distance > (1.0 + kDeltaRounding) * attempt.tolerance) {
+    if (attempt.largest_distance > (1.0 + kRelativeRounding) * attempt.tolerance) {
         text << "a sample is " << attempt.largest_distance << " from the union of balls, farther than delta, which is "
              << attempt.tolerance;
         return {"delta.distance", text.str()};

@@ -7,21 +7,21 @@
 #include <optional>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "surface/envelope_boundary.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kSharpAngle = 40.0;    // degrees: flatter edges stick out of the samples around them by little
-constexpr double kEdgeRounding = 1e-9;  // of the diagonal: points of edges that bound the solid are as near to it
-constexpr double kSeedSpacing = 3.0;    // there are ten seeds for each square of their spacing
+constexpr double kSharpAngle = 40.0;  // degrees: flatter edges stick out of the samples around them by little
+constexpr double kSeedSpacing = 3.0;  // there are ten seeds for each square of their spacing
 
 /// Edges of parts that overlap are no boundary, and left out.
 std::vector<Point> points_on_sharp_edges(const Solid& solid, double spacing) {
     std::vector<Point> points;
     const auto edges = solid.sharp_edges(kSharpAngle);
-    const double rounding = kEdgeRounding * solid.bounds().diagonal();
+    const double rounding = kRelativeRounding * solid.bounds().diagonal();
     for (std::size_t i = 0; edges && i < edges->size(); ++i) {
         const auto& [a, b] = (*edges)[i].ends;
         const double parts = std::ceil(distance(a, b) / spacing);

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -12,7 +13,6 @@ namespace {
 
 constexpr double kAscentReach = 0.5;  // of the radius
 constexpr std::size_t kMostFaceVertices = 100;
-constexpr double kAscentRounding = 1e-9;  // of the radius
 
 }  // namespace
 
@@ -32,7 +32,7 @@ std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span
                     if (is_near && seen.size() < kMostFaceVertices && std::ranges::find(seen, v) == seen.end()) {
                         seen.push_back(v);
                         is_steep =
-                            is_steep || complex.radii[v] - ball.radius > slope * way + kAscentRounding * ball.radius;
+                            is_steep || complex.radii[v] - ball.radius > slope * way + kRelativeRounding * ball.radius;
                     }
                 }
             }

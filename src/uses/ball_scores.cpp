@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/angles.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/random.hpp"
@@ -22,9 +23,6 @@
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-// Of the diagonal: so near to a ball a point counts as covered.
-constexpr double kScoreRounding = 1e-9;
 
 // Points of a triangle for each square of their spacing: as many as seeds of a solid.
 constexpr double kPointsOfSpacing = 10.0;
@@ -165,7 +163,7 @@ BallScores ball_scores(std::span<const Ball> balls, std::span<const Point> point
         BallScores scores;
         const BallTree tree = build_ball_tree(balls);
         Box box = solid.bounds();
-        const double rounding = kScoreRounding * box.diagonal();
+        const double rounding = kRelativeRounding * box.diagonal();
         const Box around = bounds(balls);
         box.extend(around);
         score_volume(scores, tree, solid, box, rounding, seed);

@@ -28,9 +28,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Of the diagonal: so much larger are covering balls than they need be, for rounding.
-constexpr double kErrorRounding = 1e-9;
-
 // Of the spacing at which points are looked at while the balls are placed: that of those that they cover in the end.
 constexpr double kCheckedPart = 0.6;
 
@@ -145,7 +142,7 @@ Greedy greedy_by_count(const SubsetSearch& search, Index count, double diagonal)
     while (!(best = greedy_cover(covered(search, high), count))) {
         low = std::exchange(high, 1.5 * high);
     }
-    while (high - low > kPrecision * high && high > 1e-9 * diagonal) {
+    while (high - low > kPrecision * high && high > kRelativeRounding * diagonal) {
         const double middle = 0.5 * (low + high);
         if (auto cover = greedy_cover(covered(search, middle), count)) {
             best = std::move(cover);
@@ -163,7 +160,7 @@ Greedy greedy_by_count(const SubsetSearch& search, Index count, double diagonal)
 Greedy greedy_by_error(const SubsetSearch& search, double error, double diagonal) {
     const auto all = static_cast<Index>(search.candidates.size());
     const double least = std::max(0.0, placed(search.candidates, search.points).error);
-    if (error < least + kErrorRounding * diagonal) {
+    if (error < least + kRelativeRounding * diagonal) {
         throw InvalidOption("the error of " + to_text(error) + " is too small: all " + std::to_string(all) +
                             " balls that the search looks at leave " + to_text(least) +
                             "; take a larger error, or all balls of the solid, of which there are more the smaller "
@@ -585,7 +582,7 @@ Placement found(const std::vector<Ball>& start, SubsetSearch& search, std::span<
                 std::optional<double> error, double spacing, const Execution& execution) {
     const int searches = start.size() > kFewSearched ? 2 : error ? 4 : 8;
     const int rounds = start.size() <= kFewSearched ? 20 : 8;
-    const double rounding = kErrorRounding * solid.bounds().diagonal();
+    const double rounding = kRelativeRounding * solid.bounds().diagonal();
     Placement placement = placed(start, search.points);
     for (int round = 0; round < rounds; ++round) {
         report(execution, "few balls", 0.1 + 0.7 * std::min(1.0, static_cast<double>(round) / searches));
@@ -611,7 +608,7 @@ Placement found(const std::vector<Ball>& start, SubsetSearch& search, std::span<
 FewBalls search_and_finish(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                            const FewBallsOptions& options, std::span<const Point> beside, const Execution& execution) {
     const double diagonal = solid.bounds().diagonal();
-    const double rounding = kErrorRounding * diagonal;
+    const double rounding = kRelativeRounding * diagonal;
     report(execution, "few balls", 0.0);
     SubsetSearch search;
     search.candidates = thinned(candidates, options.search_size, diagonal);
@@ -699,7 +696,7 @@ Part part_in(std::span<const Ball> candidates, std::span<const Point> points, st
         for (const auto& [normal, offset] : spaces) {
             const double away = dot(normal, ball.center) - offset;
             const Point middle = ball.center - away * normal;
-            if (std::abs(away) < ball.radius && clearance(spaces, middle) > -1e-9 * ball.radius) {
+            if (std::abs(away) < ball.radius && clearance(spaces, middle) > -kRelativeRounding * ball.radius) {
                 part.points.push_back(middle);
             }
         }
@@ -874,7 +871,7 @@ std::vector<Ball> enclosing_balls(std::span<const Ball> balls, Index count) {
     std::vector<Ball> large;
     for (const Group& group : groups) {
         // So that rounding leaves none outside.
-        large.push_back({group.around.center, (1.0 + kErrorRounding) * group.around.radius});
+        large.push_back({group.around.center, (1.0 + kRelativeRounding) * group.around.radius});
     }
     return large;
 }

@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
@@ -306,7 +307,7 @@ ScalePlateau longest_plateau(std::span<const FiltrationLevel> levels) {
             ++end;
         }
         // Equal steps of log s come with rounding.
-        if (levels[end].scale / levels[i].scale > (1.0 + 1e-9) * longest.end / longest.begin) {
+        if (levels[end].scale / levels[i].scale > (1.0 + kRelativeRounding) * longest.end / longest.begin) {
             longest = {levels[i].scale, levels[end].scale, std::sqrt(levels[i].scale * levels[end].scale)};
         }
     }

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/extent.hpp"
@@ -15,13 +16,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kFlatHeight = 1e-6;  // of the diagonal, from which points count as off a plane: rounding of STL files
-
-// Triangles whose area is less than this part of the product of two sides have no direction.
-constexpr double kNoArea = 1e-9;
-
-constexpr double kCocircular = 1e-9;  // sine of the angle by which a quadrangle must miss a circle to be flipped
-
 constexpr std::size_t kMostFlips = 30;  // for each edge; a fan of n needles takes about log n
 
 // Side `k` of triangle `t`, from its corner `k` to the next one, is 3 t + k.
@@ -29,7 +23,7 @@ class FaceFlips {
    public:
     explicit FaceFlips(TriangleMesh mesh)
         : mesh_(std::move(mesh)), others_(opposite_sides(sides_of_edges(mesh_.triangles, mesh_.vertices.size()))) {
-        height_ = kFlatHeight * box_around(mesh_.vertices).diagonal();
+        height_ = kFileRounding * box_around(mesh_.vertices).diagonal();
         for (Index s = 0; s < static_cast<Index>(others_.size()); ++s) {
             if (others_[s] != kNone && from(s) == from(others_[s])) {  // the triangles do not agree
                 others_[s] = others_[others_[s]] = kNone;
@@ -74,7 +68,7 @@ class FaceFlips {
         const double c_cosine = dot(a - c, b - c);
         const double d_cosine = dot(a - d, b - d);
         const double size = distance(a, c) * distance(b, c) * distance(a, d) * distance(b, d);
-        if (c_cosine * norm(down) + d_cosine * norm(up) >= -kCocircular * size) {
+        if (c_cosine * norm(down) + d_cosine * norm(up) >= -kRelativeRounding * size) {
             return false;
         }
         // Is it flat, seen from its larger half, and do both halves face as the new ones do?
@@ -85,7 +79,7 @@ class FaceFlips {
             return false;
         }
         const auto faces_so = [&](const Point& p, const Point& q, const Point& r) {
-            return dot(cross(q - p, r - p), normal) > kNoArea * distance(p, q) * distance(p, r);
+            return dot(cross(q - p, r - p), normal) > kRelativeRounding * distance(p, q) * distance(p, r);
         };
         return faces_so(c, a, d) && faces_so(d, b, c);
     }

@@ -396,12 +396,11 @@ Point regression(std::span<const CurvePoint> points, double position, double win
     const double c1 = m2 * m3 - m1 * m4;
     const double c2 = m1 * m3 - m2 * m2;
     const double determinant = m0 * c0 + m1 * c1 + m2 * c2;
-    constexpr double kSingular = 1e-9;
-    if (determinant > kSingular * m0 * m0 * m0) {
+    if (determinant > kRelativeRounding * m0 * m0 * m0) {
         return (1.0 / determinant) * (c0 * sums[0] + c1 * sums[1] + c2 * sums[2]);
     }
     const double line = m0 * m2 - m1 * m1;
-    return line > kSingular * m0 * m0 ? (1.0 / line) * (m2 * sums[0] - m1 * sums[1]) : (1.0 / m0) * sums[0];
+    return line > kRelativeRounding * m0 * m0 ? (1.0 / line) * (m2 * sums[0] - m1 * sums[1]) : (1.0 / m0) * sums[0];
 }
 
 // A chain made smooth.
@@ -650,8 +649,8 @@ class Assembly {
         const Index last = node_at(chain.back());
         const double length = smooth.positions.back();
         const bool ends_in_sheet = walk_.is_in_sheet(chain.front()) || walk_.is_in_sheet(chain.back());
-        const Index count =
-            std::max(least_edges(first, last, ends_in_sheet), static_cast<Index>(std::ceil(length / spacing_ - 1e-9)));
+        const Index count = std::max(least_edges(first, last, ends_in_sheet),
+                                     static_cast<Index>(std::ceil(length / spacing_ - kRelativeRounding)));
         std::vector<Index> branch{first};
         std::size_t i = 0;
         for (Index k = 1; k < count; ++k) {

@@ -52,8 +52,6 @@ constexpr std::size_t kPointsAtOnce = 256;
 constexpr Index kGridBlock = 16;  // points of a grid that are looked at together at first, along each axis …
 constexpr Index kSmallBlock = 2;  // … and at last
 
-constexpr double kBoundSlack = 1e-9;  // of bounds that are not to exclude what they were taken from
-
 constexpr int kCirclePoints = 12;  // for the contacts of a curve, which are a circle
 
 // SeenDirections from a centre to contacts; unit vectors.
@@ -213,8 +211,9 @@ Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
 // More than the growth by which a ball reaches a point, also where rounding takes its place.
 double growth_limit(const Ball& ball, const Point& p) {
     const double way = distance(ball.center, p);
-    return ball.radius > 0.0 ? (way + kBoundSlack * (way + norm(p))) / ball.radius + std::numeric_limits<double>::min()
-                             : kInfinity;
+    return ball.radius > 0.0
+               ? (way + kRelativeRounding * (way + norm(p))) / ball.radius + std::numeric_limits<double>::min()
+               : kInfinity;
 }
 
 // The points of a grid that are looked at together.
@@ -331,7 +330,7 @@ class BallPainter {
                 break;
             }
             const double nearest = least_distance_bound(candidate.slab, around.center);
-            if (nearest > (1.0 + kBoundSlack) * around.radius) {
+            if (nearest > (1.0 + kRelativeRounding) * around.radius) {
                 continue;
             }
             const auto most = largest_ball(inflated(candidate.slab, around.radius), around.center);
@@ -363,7 +362,7 @@ class BallPainter {
                 if (candidate.most <= largest + tolerance_) {
                     break;
                 }
-                if (least_distance_bound(candidate.slab, p) > kBoundSlack * candidate.most) {
+                if (least_distance_bound(candidate.slab, p) > kRelativeRounding * candidate.most) {
                     continue;
                 }
                 if (const auto ball = largest_ball(candidate.slab, p)) {
@@ -417,7 +416,7 @@ class ThicknessData {
     PointThickness at(const Point& p, const Solid* solid, Hint& hint) const {
         PointThickness result;
         const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
-        const Ball foot = nearest_slab(all_, p, nearest + kBoundSlack * (std::abs(nearest) + norm(p))).near.ball;
+        const Ball foot = nearest_slab(all_, p, nearest + kRelativeRounding * (std::abs(nearest) + norm(p))).near.ball;
         result.foot = 2.0 * deflated(foot);
         result.ball = touching_ball(all_, p, growth_limit(foot, p));
         hint.foot = foot;
@@ -551,8 +550,9 @@ Image cubic_grid(const Box& box, Index resolution) {
     Image grid;
     grid.origin = box.min - 1.5 * spacing * Point{1.0, 1.0, 1.0};
     grid.steps = {Point{spacing, 0, 0}, Point{0, spacing, 0}, Point{0, 0, spacing}};
-    std::ranges::transform(std::array{extent.x, extent.y, extent.z}, grid.sizes.begin(),
-                           [&](double length) { return static_cast<Index>(std::ceil(length / spacing - 1e-9)) + 4; });
+    std::ranges::transform(std::array{extent.x, extent.y, extent.z}, grid.sizes.begin(), [&](double length) {
+        return static_cast<Index>(std::ceil(length / spacing - kRelativeRounding)) + 4;
+    });
     return grid;
 }
 

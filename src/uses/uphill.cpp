@@ -19,8 +19,6 @@ constexpr double kFirstStep = 1e-5;  // of the diagonal: the shortest step, for 
 
 constexpr double kFlat = 0.001;  // of the radius: a smaller gain is not worth a step
 
-constexpr double kSlopeRounding = 1e-6;  // in an edge whose slope is the limit itself balls stay
-
 constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
 
 // Never reached: on the way out of an edge a radius grows by a quarter or more with each step, and 1e5 is 1.25^52.
@@ -35,8 +33,9 @@ struct Depth {
 
 class Hill {
    public:
+    // In an edge whose slope is the limit itself balls stay.
     Hill(const Solid& solid, double slope)
-        : solid_(solid), slope_(slope + kSlopeRounding), diagonal_(solid.bounds().diagonal()) {}
+        : solid_(solid), slope_(slope + kFileRounding), diagonal_(solid.bounds().diagonal()) {}
 
     double first_step() const { return kFirstStep * diagonal_; }
 
@@ -86,9 +85,8 @@ class Hill {
 
    private:
     static constexpr double kBoundSlack = 1.001;  // a bound near the distance makes the search quick
-    static constexpr double kOnBoundary = 1e-12;  // of the diagonal: places as near have no gradient of their own …
-    static constexpr double kBeside = 1e-7;       // … and take that of a place as far from them, …
-    static constexpr Point kAside{0.48, 0.6, 0.64};  // … in a direction in which few faces lie
+    // Places on the boundary have no gradient of their own, and take that of a place beside, where few faces lie.
+    static constexpr Point kAside{0.48, 0.6, 0.64};
 
     template <class IsInside>
     Depth depth(const Point& place, const std::optional<Point>& nearest, const IsInside& is_inside) const {
@@ -96,11 +94,11 @@ class Hill {
             return {place, 0.0, {}};
         }
         const double way = distance(place, *nearest);
-        if (way > kOnBoundary * diagonal_) {
+        if (way > kRelativeRounding * diagonal_) {
             const double side = is_inside() ? 1.0 : -1.0;
             return {place, side * way, side / way * (place - *nearest)};
         }
-        const Point beside = place + kBeside * diagonal_ * kAside;
+        const Point beside = place + kFileRounding * diagonal_ * kAside;
         const Point outwards = beside - solid_.nearest(beside).value_or(place);
         return {place, 0.0, (solid_.inside(beside) ? 1.0 : -1.0) * unit(outwards)};
     }

@@ -30,8 +30,7 @@ namespace {
 
 constexpr std::string_view kVanishingStage = "vanishing scales";
 constexpr int kMostCuttingRounds = 200;  // of cutting planes, then a ball is kept; five are usual
-constexpr double kCutSlack = 0.05;     // of the radius: which of several balls cuts off that much more does not matter
-constexpr double kCoverMargin = 1e-9;  // of the radius: what is closer to a sphere is not covered for certain
+constexpr double kCutSlack = 0.05;  // of the radius: which of several balls cuts off that much more does not matter
 
 // A convex polyhedron around the origin, a box from which half-spaces are cut: the part of a power diagram that belongs
 // to B. Of the planes through a corner it knows three; corners that share two of them have an edge.
@@ -396,9 +395,9 @@ class Vanishing {
         }
         // The cell is what B has more of than the others: there its sphere is not covered.
         const Point& far = cell_.farthest_corner();
-        if (norm(far) > (1.0 - kCoverMargin) * radius_) {
+        if (norm(far) > (1.0 - kRelativeRounding) * radius_) {
             const Point near = is_center_in_cell_ ? Point{} : cell_.nearest_point();
-            if (norm(near) >= (1.0 - kCoverMargin) * radius_) {
+            if (norm(near) >= (1.0 - kRelativeRounding) * radius_) {
                 return std::nullopt;  // all of B belongs to others
             }
             return on_sphere(near, far);
@@ -414,7 +413,7 @@ class Vanishing {
             middle = middle + corner.at;
         }
         middle = (1.0 / static_cast<double>(cell_.corners().size())) * middle;
-        for (double part = 0.5; part > kCoverMargin; part *= 0.5) {
+        for (double part = 0.5; part > kRelativeRounding; part *= 0.5) {
             const Point inner = near + part * (middle - near);
             const Point outer = far + part * (middle - far);
             if (norm(inner) < radius_ && norm(outer) > radius_) {
@@ -473,7 +472,7 @@ class Vanishing {
             return squared_distance(y, t * direction(other)) - balls_[other].radius * balls_[other].radius;
         };
         const auto covers = [&](const Point& y, Index other) {
-            return power(y, other) <= -kCoverMargin * radius_ * radius_;
+            return power(y, other) <= -kRelativeRounding * radius_ * radius_;
         };
         for (const Index other : active_) {
             if (std::ranges::all_of(cell_.corners(), [&](const Cell::Corner& c) { return covers(c.at, other); })) {

@@ -174,8 +174,7 @@ class CreaseSearch {
 
     // Some point of the boundary is known: no farther one is wanted.
     static Question question_near(const Point& p, const Point& known) {
-        constexpr double kRounding = 1e-6;
-        return {p, (1.0 + kRounding) * distance(p, known)};
+        return {p, (1.0 + kFileRounding) * distance(p, known)};
     }
 
     // The plane that is nearest from a point farther from those before. Little farther first: in thin parts the

@@ -73,9 +73,6 @@ constexpr int kMostCenteringRounds = 4;
 // that find the nearest point by a local search may miss a nearer one.
 constexpr double kSureReach = 0.5;
 
-// A bound of a distance that this is added to, as a part, does not cut it off by rounding.
-constexpr double kCenteringRounding = 1e-9;
-
 // Progress is reported this often.
 constexpr std::size_t kBlocksOfProgress = 16;
 
@@ -264,7 +261,7 @@ std::vector<FirstContact> first_contacts(const MedialComplex& complex, std::span
     std::vector<double> bounds;
     for (const Index v : vertices) {
         centers.push_back(complex.vertices[v]);
-        bounds.push_back((1.0 + kCenteringRounding) * (complex.radii[v] + tolerance));
+        bounds.push_back((1.0 + kRelativeRounding) * (complex.radii[v] + tolerance));
     }
     const std::vector<std::optional<Point>> nearest = nearest_of(solid, centers, bounds);
     std::vector<FirstContact> contacts;
@@ -419,7 +416,7 @@ class CenteringBatch {
 
     // Of the distance of a point from the boundary.
     double bound(const Centering& vertex, const Point& p) const {
-        return (1.0 + kCenteringRounding) * vertex.reach(p) + kCenteringRounding * tolerance_;
+        return (1.0 + kRelativeRounding) * vertex.reach(p) + kRelativeRounding * tolerance_;
     }
 
     static std::span<const Point> directions_of(const Centering& vertex) {

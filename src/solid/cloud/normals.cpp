@@ -15,14 +15,12 @@
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-// Coordinates are rounded to about this part of the extent of the points.
-constexpr double kPlaneRounding = 1e-9;
 
 Eigen::Vector3d to_eigen(const Point& p) { return {p.x, p.y, p.z}; }
 
@@ -198,8 +196,8 @@ bool are_coplanar(std::span<const Point> points) {
     const Point normal = cross(along, c - a);
     const double extent = distance(a, b);
     const double length = norm(normal);
-    return length <= kPlaneRounding * extent || std::ranges::all_of(points, [&](const Point& p) {
-               return std::abs(dot(normal, p - a)) <= kPlaneRounding * extent * length;
+    return length <= kRelativeRounding * extent || std::ranges::all_of(points, [&](const Point& p) {
+               return std::abs(dot(normal, p - a)) <= kRelativeRounding * extent * length;
            });
 }
 

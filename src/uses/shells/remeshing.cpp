@@ -3,12 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "base/angles.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 
@@ -290,7 +292,7 @@ class WallRemesher {
     double agreement(const std::array<Point, 3>& corners, const Point& normal) const {
         const Point area = cross(corners[1] - corners[0], corners[2] - corners[0]);
         const double twice = norm(area);
-        return twice > 1e-6 * size_ * size_ ? dot(area, normal) / twice : -1.0;
+        return twice > kFileRounding * size_ * size_ ? dot(area, normal) / twice : -1.0;
     }
 
     std::array<Point, 3> corners_of(Index t) const {
@@ -495,8 +497,7 @@ class WallRemesher {
             return angle_of(u, w);
         };
         // Four points on a circle would be flipped for ever.
-        constexpr double kHalfTurn = 3.14159265358979 + 1e-6;
-        if (c == d || angle_at(c) + angle_at(d) <= kHalfTurn || !triangles_at(c, d).empty()) {
+        if (c == d || angle_at(c) + angle_at(d) <= std::numbers::pi + kFileRounding || !triangles_at(c, d).empty()) {
             return false;
         }
         const std::array<Index, 3> one{c, a, d};

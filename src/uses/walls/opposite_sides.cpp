@@ -12,6 +12,7 @@
 
 #include "base/angles.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "uses/uphill.hpp"
 
@@ -36,8 +37,6 @@ constexpr double kMostShrinking = 0.05;
 
 constexpr int kMostTrials = 40;  // at a sharp edge each shrinks by a half: down to 1e-12
 
-constexpr double kBesidePoint = 1e-6;  // of the diagonal: rounding of STL files
-
 constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
 
 constexpr int kCenterings = 8;  // a ball near a rim, off the middle, takes three
@@ -51,14 +50,11 @@ constexpr double kLeastSlope = 0.2;    // of the slope that counts: below it thr
 constexpr double kSlopeMargin = 1.02;  // of its square, for contacts found a hundredth of a radius beside the centre
 
 constexpr double kLevel = 1e-4;     // growth along a wall that is none
-constexpr double kLowering = 1e-6;  // of the radius: a smaller change is none
 constexpr int kMostDownSteps = 60;  // a wedge is left by a tenth of its width or more with each step
 constexpr int kDownTrials = 4;      // halvings of a step
 
-constexpr double kNearBound = 1.0 + 1e-6;
-
 Point nearest_within(const Solid& solid, const Point& p, double way) {
-    if (const auto near = solid.nearest(p, kNearBound * way)) {
+    if (const auto near = solid.nearest(p, (1.0 + kFileRounding) * way)) {
         return *near;
     }
     return solid.nearest(p).value_or(p);
@@ -122,7 +118,7 @@ Ball centered_between(const Solid& solid, const Ball& ball) {
 Ball centered(const Solid& solid, Ball ball) {
     for (int round = 0; round < kCenterings; ++round) {
         const Ball next = centered_between(solid, ball);
-        const bool is_larger = next.radius > (1.0 + kLowering) * ball.radius;
+        const bool is_larger = next.radius > (1.0 + kFileRounding) * ball.radius;
         ball = next;
         if (!is_larger) {
             break;
@@ -219,7 +215,7 @@ Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards
         length = shrunk(length, found.nearest);
     }
     // Where parts overlap, the surface of one that lies in the other has nothing on its outside.
-    const bool is_on_side = solid.inside(p + kBesidePoint * solid.bounds().diagonal() * inwards);
+    const bool is_on_side = solid.inside(p + kFileRounding * solid.bounds().diagonal() * inwards);
     return is_on_side ? on_ridge(solid, {p, 0.0}, slope, most) : Ball{p + most * inwards, most};
 }
 
@@ -227,8 +223,7 @@ Ball ball_between_sides(const Solid& solid, const Point& p, double slope, double
     const double diagonal = solid.bounds().diagonal();
     const Point foot = solid.nearest(p).value_or(p);
     const double depth = distance(foot, p);
-    constexpr double kOnSurface = 1e-6;  // of the diagonal: coordinates of files have about as many digits
-    if (depth > kOnSurface * diagonal && solid.inside(p)) {
+    if (depth > kFileRounding * diagonal && solid.inside(p)) {
         return ball_between_sides(solid, foot, unit(p - foot), slope, most);
     }
     return on_ridge(solid, {foot, 0.0}, slope, most);
@@ -278,7 +273,7 @@ Ball downhill(const Solid& solid, Ball ball, double slope) {
                 continue;
             }
             const Ball next = on_ridge(solid, {place, depth}, slope, ball.radius);
-            is_lower = next.radius < (1.0 - kLowering) * ball.radius;
+            is_lower = next.radius < (1.0 - kFileRounding) * ball.radius;
             ball = is_lower ? next : ball;
         }
         if (!is_lower) {

@@ -32,10 +32,8 @@ namespace {
 
 constexpr std::string_view kWallsStage = "walls";
 
-// Accuracy of values, as a part of a limit, which `uphill` and rims leave out; and of the diagonal: coordinates of STL
-// files have seven digits.
+// Accuracy of values, as a part of a limit, which `uphill` and rims leave out.
 constexpr double kValueTolerance = 3e-3;
-constexpr double kPlaceTolerance = 1e-6;
 
 // Balls are looked for up to these multiples of a limit: of thin walls and gaps, so that what is thinner shows beside
 // its thinnest place, too; and of thick walls.
@@ -65,8 +63,6 @@ constexpr double kSameBall = 0.5;  // of the sum of two radii: balls with centre
 constexpr double kThickSlope = 0.02;  // growth at which a ball is taken to be the largest around
 
 constexpr double kPointSize = 0.02;  // of the limit: the contacts of a smaller ball do not tell its direction
-
-constexpr double kOnEdge = 1e-6;  // barycentric coordinate of a point of an edge
 
 // Appends to which vertices point to one side: the surface falls back around them, on sharp edges and where its radius
 // of curvature is small.
@@ -114,7 +110,7 @@ class WallSearch {
           diagonal_(solid.bounds().diagonal()),
           slope_(cosine_of_degrees(0.5 * options.angle)) {
         walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_);
-        walls_.tolerance = kPlaceTolerance * diagonal_;
+        walls_.tolerance = kFileRounding * diagonal_;
         for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
             walls_.tolerance = std::max(walls_.tolerance, kValueTolerance * limit.value_or(0.0));
         }
@@ -280,7 +276,7 @@ class WallSearch {
             const Index t = near.triangles[i];
             const std::array<Index, 3> corners = mesh.triangles[t];
             const std::array<double, 3> parts = barycentric(mesh, corners, near.points[i]);
-            const auto zeros = std::ranges::count_if(parts, [](double part) { return part <= kOnEdge; });
+            const auto zeros = std::ranges::count_if(parts, [](double part) { return part <= kFileRounding; });
             if (zeros == 2) {
                 const Index v = corners[std::ranges::max_element(parts) - parts.begin()];
                 side.balls[v] = side.balls[v].radius < balls[i].radius ? side.balls[v] : balls[i];
