@@ -678,25 +678,18 @@ Command axis_command(CommandLine program) {
             .one_text_each()
             .value_text("S[,S...]");
     const Option angle =
-        command
-            .add_option("--angle", options->pipeline.filter_angle,
-                        "Remove sheets whose object angle is smaller, where that keeps the topology; degrees" +
-                            range_and_default(kAngleRange, FilterOptions().angle))
-            .check(in_range(kAngleRange))
-            .value_text("A");
+        add_number(command, "--angle", options->pipeline.filter_angle,
+                   "Remove sheets whose object angle is smaller, where that keeps the topology; degrees", kAngleRange,
+                   "A", FilterOptions().angle);
     add_length_options(command, "--lambda", options->pipeline.lambda, kLambdaRange,
                        "Least radius of a ball around the closest boundary points, for --method lambda,\n"
                        "relative to the diagonal of the solid's bounding box" +
                            range_and_default(kLambdaRange, kDefaultLambda.value()));
     const Option sharp_angle =
-        command
-            .add_option(
-                "--sharp-angle", options->pipeline.sharp_angle,
-                "Sheets end on convex sharp edges of the solid, seams in its corners, in balls of radius 0: edges\n"
-                "where the normals on both sides differ by this angle at least; degrees" +
-                    range_and_default(kSharpAngleRange, "twice --angle and a degree"))
-            .check(in_range(kSharpAngleRange))
-            .value_text("A");
+        add_number(command, "--sharp-angle", options->pipeline.sharp_angle,
+                   "Sheets end on convex sharp edges of the solid, seams in its corners, in balls of radius 0: edges\n"
+                   "where the normals on both sides differ by this angle at least; degrees",
+                   kSharpAngleRange, "A", "twice --angle and a degree");
     command
         .add_flag_callback(
             "--no-sharp", [options] { options->pipeline.reaches_sharp_edges = false; },

@@ -133,13 +133,10 @@ Command compare_command(CommandLine program) {
     auto options = std::make_shared<CompareOptions>();
     command.add_option("A", options->inputs[0], "Mesh, balls or axis").required().value_text(" ");
     command.add_option("B", options->inputs[1], "Mesh, balls or axis").required().value_text(" ");
-    command
-        .add_option("--spacing", options->spacing,
-                    "Every point of a surface is at most this far from one whose distance is computed,\n"
-                    "relative to the diagonal of A" +
-                        range_and_default(kSpacingRange, options->spacing))
-        .check(in_range(kSpacingRange))
-        .value_text("R");
+    add_number(command, "--spacing", options->spacing,
+               "Every point of a surface is at most this far from one whose distance is computed,\n"
+               "relative to the diagonal of A",
+               kSpacingRange, "R");
     add_balls_only_option(command, options->takes_balls_only);
     command.add_flag("--json", options->is_json, "As JSON").value_text(" ");
     add_threads_option(command, options->threads);

@@ -84,13 +84,10 @@ Command filter_command(CommandLine program) {
     const CommandLine command =
         program.add_subcommand("filter", "Remove unimportant sheets and curves of a stored axis");
     auto options = std::make_shared<FilteringOptions>();
-    command
-        .add_option("--angle", options->angle,
-                    "Remove sheets and curves whose object angle is smaller, where that keeps the topology;\n"
-                    "degrees. Where the file has no angles they are computed from the radii" +
-                        range_and_default(kAngleRange, FilterOptions().angle))
-        .check(in_range(kAngleRange))
-        .value_text("A");
+    add_number(command, "--angle", options->angle,
+               "Remove sheets and curves whose object angle is smaller, where that keeps the topology;\n"
+               "degrees. Where the file has no angles they are computed from the radii",
+               kAngleRange, "A", FilterOptions().angle);
     command
         .add_flag_callback(
             "--by-area", [options] { options->measure = SheetAngle::kByArea; },

@@ -241,12 +241,8 @@ Command filtration_command(CommandLine program) {
                     "Also write a page that any browser shows, with a slider over all scales: .html;\n"
                     "a folder gets {name}-view.html")
         .value_text("FILE");
-    command
-        .add_option("--largest-scale", options->filtration.largest_scale,
-                    "Scale up to which to look; what is left there never vanishes" +
-                        range_and_default(kLargestScaleRange, options->filtration.largest_scale))
-        .check(in_range(kLargestScaleRange))
-        .value_text("S");
+    add_number(command, "--largest-scale", options->filtration.largest_scale,
+               "Scale up to which to look; what is left there never vanishes", kLargestScaleRange, "S");
     add_delta_options(command, options->delta, &options->delta_range);
     add_sampling_option(command, options->sizing);
     add_source_options(command, options->source);

@@ -122,12 +122,9 @@ Command medial_command(CommandLine program) {
     add_output_option(command, options->output, options->output_format,
                       "Axis: .ply, .ma, .vtp, .obj or .glb; a folder gets {name}-medial.ply;\n"
                       "{name} and {scale} are filled in");
-    command
-        .add_option("--scale", options->scale,
-                    "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis" +
-                        range_and_default(kScaleRange, options->scale))
-        .check(in_range(kScaleRange))
-        .value_text("S");
+    add_number(command, "--scale", options->scale,
+               "Factor by which the balls are grown, and the axis shrunk again; 1: exact medial axis", kScaleRange,
+               "S");
     command
         .add_option("--angle", options->filter_angle,
                     "Remove sheets whose object angle is smaller, where that keeps the topology; degrees\n"

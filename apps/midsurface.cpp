@@ -316,13 +316,10 @@ Command midsurface_command(CommandLine program) {
                     "Of the elements: 1, three nodes; 2, six; without it 2 in .inp, 1 in other formats")
         .check(is_one_of({"1", "2"}))
         .value_text("N");
-    command
-        .add_option("--angle", options->midsurface.angle,
-                    "Least object angle of what counts as a wall: half the angle between its contacts; sheets that\n"
-                    "run into edges of a box have 45; degrees" +
-                        range_and_default(kWallAngleRange, options->midsurface.angle))
-        .check(in_range(kWallAngleRange))
-        .value_text("A");
+    add_number(command, "--angle", options->midsurface.angle,
+               "Least object angle of what counts as a wall: half the angle between its contacts; sheets that\n"
+               "run into edges of a box have 45; degrees",
+               kWallAngleRange, "A");
     command
         .add_flag_callback(
             "--no-extend", [options] { options->midsurface.extends = false; },
@@ -330,12 +327,8 @@ Command midsurface_command(CommandLine program) {
         .value_text(" ");
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     add_sampling_option(command, options->pipeline.sizing);
-    command
-        .add_option("--scale", options->scale,
-                    "Factor by which balls are grown, so that small features go" +
-                        range_and_default(kScaleRange, options->scale))
-        .check(in_range(kScaleRange))
-        .value_text("S");
+    add_number(command, "--scale", options->scale, "Factor by which balls are grown, so that small features go",
+               kScaleRange, "S");
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(

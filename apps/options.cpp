@@ -69,11 +69,7 @@ std::string range_and_default(const Range& range, const std::string& default_val
 }
 
 void add_threads_option(CommandLine command, int& threads) {
-    command
-        .add_option("--threads", threads,
-                    "Number of threads; 0: all that the machine has" + range_and_default(kThreadsRange, threads))
-        .check(whole_in_range(kThreadsRange))
-        .value_text("N");
+    add_number(command, "--threads", threads, "Number of threads; 0: all that the machine has", kThreadsRange, "N");
 }
 
 void add_seed_option(CommandLine command, std::uint64_t& seed) {
@@ -249,12 +245,9 @@ void add_compact_options(CommandLine command, CompactOptions& compact, const std
 }
 
 void add_measured_scale_option(CommandLine command, double& scale) {
-    command
-        .add_option("--scale", scale,
-                    "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones" +
-                        range_and_default(kScaleRange, scale))
-        .check(in_range(kScaleRange))
-        .value_text("S");
+    add_number(command, "--scale", scale,
+               "Factor by which balls are grown: at 1 every bump counts, larger factors drop small ones", kScaleRange,
+               "S");
 }
 
 Option add_dense_option(CommandLine command, bool& is_dense) {

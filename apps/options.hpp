@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,25 @@ struct CommonOptions {
 TextCheck in_range(const Range& range);
 /// The same for whole numbers.
 TextCheck whole_in_range(const Range& range);
+
+/// The last line of an option's description.
+std::string range_and_default(const Range& range, double default_value);
+std::string range_and_default(const Range& range, const std::string& default_value);
+
+/// An option that takes a number of a range, which the help names together with the default.
+template <class Number, class Default>
+Option add_number(CommandLine command, const std::string& name, Number& number, const std::string& help,
+                  const Range& range, const std::string& placeholder, const Default& default_value) {
+    return command.add_option(name, number, help + range_and_default(range, default_value))
+        .check(std::is_integral_v<Number> ? whole_in_range(range) : in_range(range))
+        .value_text(placeholder);
+}
+/// The default is what the number is.
+template <class Number>
+Option add_number(CommandLine command, const std::string& name, Number& number, const std::string& help,
+                  const Range& range, const std::string& placeholder) {
+    return add_number(command, name, number, help, range, placeholder, number);
+}
 
 void add_common_options(CommandLine command, CommonOptions& options);
 void add_threads_option(CommandLine command, int& threads);
@@ -132,9 +152,5 @@ Option add_union_option(CommandLine command, std::optional<UnionKind>& kind);
 std::string name_of(Sizing sizing);
 
 std::string name_of(UnionKind kind);
-
-/// The last line of an option's description.
-std::string range_and_default(const Range& range, double default_value);
-std::string range_and_default(const Range& range, const std::string& default_value);
 
 }  // namespace scaleaxis::app

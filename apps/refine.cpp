@@ -32,12 +32,8 @@ Command refine_command(CommandLine program) {
     const CommandLine command =
         program.add_subcommand("refine", "Add vertices to a stored axis until its balls overlap: they are the solid");
     auto options = std::make_shared<RefiningOptions>();
-    command
-        .add_option("--meeting-angle", options->meeting_angle,
-                    "The balls at the ends of each edge meet at this angle at least; degrees" +
-                        range_and_default(kMeetingAngleRange, options->meeting_angle))
-        .check(in_range(kMeetingAngleRange))
-        .value_text("A");
+    add_number(command, "--meeting-angle", options->meeting_angle,
+               "The balls at the ends of each edge meet at this angle at least; degrees", kMeetingAngleRange, "A");
     command
         .add_option("--most-vertices", options->most_vertices,
                     "Refuse to make more vertices than this\n"

@@ -89,12 +89,8 @@ Command sample_field_command(CommandLine program) {
     add_balls_or_axis_options(command, options->given);
     add_output_option(command, options->output, options->output_format,
                       "Image: .nrrd (32-bit floats); a folder gets {name}-field.nrrd; {name} is filled in");
-    command
-        .add_option(
-            "--resolution", options->resolution,
-            "Points along the longest side of the grid" + range_and_default(kResolutionRange, options->resolution))
-        .check(in_range(kResolutionRange))
-        .value_text("N");
+    add_number(command, "--resolution", options->resolution, "Points along the longest side of the grid",
+               kResolutionRange, "N");
     add_common_options(command, options->common);
     command.footer(
         "The value is the least of |p - centre| - radius: negative inside, and outside the distance to the union.\n"

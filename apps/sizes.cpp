@@ -136,22 +136,15 @@ Command sizes_command(CommandLine program) {
     add_output_option(command, options->output, options->output_format,
                       "Sizes: .pos or .msh for Gmsh, .sol for mmg, with the surface beside it as .mesh;\n"
                       "a folder gets {name}-sizes.pos; {name} is filled in");
-    command
-        .add_option("--elements-across", options->sizes.elements_across,
-                    "How many elements lie across a wall" +
-                        range_and_default(kElementsAcrossRange, options->sizes.elements_across))
-        .check(in_range(kElementsAcrossRange))
-        .value_text("N");
+    add_number(command, "--elements-across", options->sizes.elements_across, "How many elements lie across a wall",
+               kElementsAcrossRange, "N");
     add_positive_length(command, "--min-size", options->sizes.min_size,
                         "Least size, a length in units of the input; 1/1000 of the diagonal if not given");
     add_positive_length(command, "--max-size", options->sizes.max_size, "Largest size");
-    command
-        .add_option("--gradation", options->sizes.gradation,
-                    "Largest difference of sizes for each unit of distance: at 0.3 they grow by about a third from\n"
-                    "one element to the next" +
-                        range_and_default(kGradationRange, options->sizes.gradation))
-        .check(in_range(kGradationRange))
-        .value_text("G");
+    add_number(command, "--gradation", options->sizes.gradation,
+               "Largest difference of sizes for each unit of distance: at 0.3 they grow by about a third from\n"
+               "one element to the next",
+               kGradationRange, "G");
     add_choice(command, "--of", options->sizes.measure, kMeasures,
                "What is divided by the number of elements: the thickness of the wall [default], or twice the\n"
                "distance to the medial axis, inside or outside, which is small at narrow holes and slots, too");
@@ -160,13 +153,10 @@ Command sizes_command(CommandLine program) {
                     "Write a .sol with the sizes at the vertices of this mesh, in Medit's text format: of tetrahedra\n"
                     "for mmg3d")
         .value_text("MESH");
-    command
-        .add_option("--angle", options->sizes.angle,
-                    "Least angle between two contacts of a ball for which they lie on opposite sides, as for\n"
-                    "scaleaxis walls; degrees" +
-                        range_and_default(kWallAngleRange, options->sizes.angle))
-        .check(in_range(kWallAngleRange))
-        .value_text("A");
+    add_number(command, "--angle", options->sizes.angle,
+               "Least angle between two contacts of a ball for which they lie on opposite sides, as for\n"
+               "scaleaxis walls; degrees",
+               kWallAngleRange, "A");
     add_delta_options(command, options->delta, nullptr);
     add_source_options(command, options->source);
     add_common_options(command, options->common);

@@ -297,12 +297,9 @@ Command skeleton_command(CommandLine program) {
     add_length_options(command, "--spacing", options->spacing, kSpacingRange,
                        "Distance of the nodes along branches, at most; relative to the diagonal of the bounding box\n"
                        "[1e-06 ... 1; default 0.01]");
-    command
-        .add_option("--significance", options->significance,
-                    "How far a branch sticks out of the others to stay, relative to its own radius; 0: all of them" +
-                        range_and_default(kSignificanceRange, options->significance))
-        .check(in_range(kSignificanceRange))
-        .value_text("F");
+    add_number(command, "--significance", options->significance,
+               "How far a branch sticks out of the others to stay, relative to its own radius; 0: all of them",
+               kSignificanceRange, "F");
     add_choice(command, "--radius", options->radius, kRadiusNames,
                "Of a node: 'inscribed': of the largest ball in the solid around it; 'mean': mean distance to the\n"
                "surface in the plane normal to the branch, which noise does not make smaller\n[default inscribed]");
@@ -331,13 +328,10 @@ Command skeleton_command(CommandLine program) {
     add_delta_options(command, options->pipeline.delta, &options->pipeline.delta_range);
     add_sampling_option(command, options->pipeline.sizing);
     const Option scale =
-        command
-            .add_option("--scale", options->scale,
-                        "Factor by which balls are grown, so that small features go; of an axis: by which they had "
-                        "been,\nby default as the file says, or else 1" +
-                            range_and_default(kScaleRange, options->scale))
-            .check(in_range(kScaleRange))
-            .value_text("S");
+        add_number(command, "--scale", options->scale,
+                   "Factor by which balls are grown, so that small features go; of an axis: by which they had "
+                   "been,\nby default as the file says, or else 1",
+                   kScaleRange, "S");
     add_clean_options(command, options->pipeline.cleaning, "half of delta");
     add_source_options(command, options->source);
     add_common_options(command, options->common);

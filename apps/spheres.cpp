@@ -370,12 +370,8 @@ Command spheres_command(CommandLine program) {
                     "Number of spheres of all links of a robot: each next one for the link that sticks out most")
         .check(whole_in_range({1, 100000}))
         .value_text("N");
-    command
-        .add_option("--effort", options->effort,
-                    "How long the search for fewer or better balls goes on, relative to the default" +
-                        range_and_default(kEffortRange, options->effort))
-        .check(in_range(kEffortRange))
-        .value_text("E");
+    add_number(command, "--effort", options->effort,
+               "How long the search for fewer or better balls goes on, relative to the default", kEffortRange, "E");
     const Option cover =
         command.add_flag("--cover", options->covers, "Spheres that cover the solid (default)").value_text(" ");
     command.add_flag("--inside", options->is_inside, "Spheres that lie inside the solid")

@@ -270,13 +270,10 @@ Command table_command(CommandLine program) {
     add_choice(command, "--rows", options->measures.pieces, kRowNames,
                "One row for each input (each label or object, with --each-label or --each-object), each component\n"
                "of it, or each part: what belongs to a branch of its skeleton\n[default input]");
-    command
-        .add_option("--angle", options->measures.thickness.angle,
-                    "Least angle between two contacts of a ball, seen from its centre, for which it counts for\n"
-                    "thickness, as of scaleaxis thickness; degrees" +
-                        range_and_default(kContactAngleRange, options->measures.thickness.angle))
-        .check(in_range(kContactAngleRange))
-        .value_text("A");
+    add_number(command, "--angle", options->measures.thickness.angle,
+               "Least angle between two contacts of a ball, seen from its centre, for which it counts for\n"
+               "thickness, as of scaleaxis thickness; degrees",
+               kContactAngleRange, "A");
     add_measured_scale_option(command, options->scale);
     add_delta_options(command, options->delta, nullptr);
     add_sampling_option(command, options->sizing);

@@ -407,12 +407,9 @@ Command thickness_command(CommandLine program) {
                     "Also write a page that any browser shows, the surface coloured by thickness: .html;\n"
                     "a folder gets {name}-view.html")
         .value_text("FILE");
-    command
-        .add_option("--resolution", options->resolution,
-                    "Points along the longest side of the image of an input that is none" +
-                        range_and_default(kResolutionRange, kDefaultResolution))
-        .check(whole_in_range(kResolutionRange))
-        .value_text("N");
+    add_number(command, "--resolution", options->resolution,
+               "Points along the longest side of the image of an input that is none", kResolutionRange, "N",
+               kDefaultResolution);
     command
         .add_option("--limit", options->limit,
                     "Tell the connected regions of the surface that are thinner, a length in units of the input")
@@ -422,29 +419,21 @@ Command thickness_command(CommandLine program) {
             return is_length ? std::string() : text + " is no positive length";
         })
         .value_text("LENGTH");
-    command
-        .add_option("--angle", options->thickness.angle,
-                    "Least angle between two contacts of a ball, seen from its centre, for which it counts: those in\n"
-                    "edges see less, so that these do not read as thin; 0: all balls, the definition of Hildebrand\n"
-                    "and Rueegsegger; degrees" +
-                        range_and_default(kContactAngleRange, options->thickness.angle))
-        .check(in_range(kContactAngleRange))
-        .value_text("A");
+    add_number(command, "--angle", options->thickness.angle,
+               "Least angle between two contacts of a ball, seen from its centre, for which it counts: those in\n"
+               "edges see less, so that these do not read as thin; 0: all balls, the definition of Hildebrand\n"
+               "and Rueegsegger; degrees",
+               kContactAngleRange, "A");
     add_measured_scale_option(command, options->scale);
     add_delta_options(command, options->delta, nullptr);
     add_sampling_option(command, options->sizing);
-    command
-        .add_option("--edge", options->edge,
-                    "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
-                    "bounding box; 0: leave them as they are" +
-                        range_and_default(kEdgeRange, options->edge))
-        .check(in_range(kEdgeRange))
-        .value_text("R");
+    add_number(command, "--edge", options->edge,
+               "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
+               "bounding box; 0: leave them as they are",
+               kEdgeRange, "R");
     command.add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
         .value_text("MESH");
-    command.add_option("--bins", options->bins, "Bins of the histogram" + range_and_default(kBinsRange, options->bins))
-        .check(whole_in_range(kBinsRange))
-        .value_text("N");
+    add_number(command, "--bins", options->bins, "Bins of the histogram", kBinsRange, "N");
     add_source_options(command, options->source);
     add_common_options(command, options->common);
     command.footer(

@@ -225,20 +225,14 @@ Command walls_command(CommandLine program) {
                     "Also write a page that any browser shows, the surface coloured: .html;\n"
                     "a folder gets {name}-view.html")
         .value_text("FILE");
-    command
-        .add_option("--angle", options->walls.angle,
-                    "Least angle between two contacts of a ball for which they lie on opposite sides: walls and\n"
-                    "gaps that meet at less than 180 degrees minus this are thin; degrees" +
-                        range_and_default(kWallAngleRange, options->walls.angle))
-        .check(in_range(kWallAngleRange))
-        .value_text("A");
-    command
-        .add_option("--edge", options->walls.edge,
-                    "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
-                    "bounding box; they are divided further where something thin may be" +
-                        range_and_default(kWallEdgeRange, options->walls.edge))
-        .check(in_range(kWallEdgeRange))
-        .value_text("R");
+    add_number(command, "--angle", options->walls.angle,
+               "Least angle between two contacts of a ball for which they lie on opposite sides: walls and\n"
+               "gaps that meet at less than 180 degrees minus this are thin; degrees",
+               kWallAngleRange, "A");
+    add_number(command, "--edge", options->walls.edge,
+               "Divide the triangles of the surface until no edge is longer, relative to the diagonal of the\n"
+               "bounding box; they are divided further where something thin may be",
+               kWallEdgeRange, "R");
     command.add_flag("--exit-zero", options->exits_zero, "Exit with status 0 whatever is found");
     add_delta_options(command, options->delta, nullptr);
     add_source_options(command, options->source);

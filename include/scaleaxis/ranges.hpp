@@ -16,6 +16,7 @@ struct Range {
 inline constexpr Range kDeltaRange{1e-5, 0.5};           ///< tolerance δ, in diagonals of the solid's bounding box
 inline constexpr Range kScaleRange{1.0, 10.0};           ///< scale s
 inline constexpr Range kLargestScaleRange{1.0, 1000.0};  ///< up to which a filtration looks, and is cut
+inline constexpr Range kPerturbationRange{0.0, 0.01};    ///< of balls, in their radii
 inline constexpr Range kAngleRange{0.0, 90.0};           ///< object angle of the filter, degrees
 inline constexpr Range kLambdaRange{0.0, 0.5};           ///< λ, in diagonals of the solid's bounding box
 inline constexpr Range kCleaningRange{0.0, 0.5};         ///< erosion thickness, in diagonals of the box

@@ -28,9 +28,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Of the diagonal of the vertices: how far radii may be from linear ones.
-constexpr double kLinearTolerance = 1e-4;
-
 // How much of the box around the envelope is added on each side where it is looked for, as a part of the diagonal.
 constexpr double kEnvelopeMargin = 0.02;
 
@@ -316,7 +313,7 @@ Envelope::Envelope(const MedialComplex& complex) {
     }
     const Box box = box_around(complex.vertices);
     data_ = std::make_shared<const EnvelopeData>(
-        linearized(complex, std::max(kLinearTolerance * box.diagonal(), std::numeric_limits<double>::min())));
+        linearized(complex, std::max(kSmallError * box.diagonal(), std::numeric_limits<double>::min())));
 }
 
 Box Envelope::bounds() const { return data_->bounds(); }

@@ -14,17 +14,17 @@
 #include "axis/inner_voronoi.hpp"
 #include "balls/union/union_data.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr int kMaxRetries = 8;
-constexpr double kSmallestRetry = 1e-6;
-constexpr double kMaxPerturbation = 0.01;
 
 // Puts the parts of the axis together: the Voronoi diagram inside the union, and the singular simplices of the dual
 // complex. Centres that occur become vertices.
@@ -173,7 +173,7 @@ MedialAxis axis_of_perturbed(std::span<const Ball> balls, const MedialAxisOption
                     BallUnion(std::make_shared<const UnionData>(std::move(moved), std::move(parts))),
                     found->statistics};
         }
-        amount = std::min(kMaxPerturbation, std::max(2.0 * amount, kSmallestRetry));
+        amount = std::min(kPerturbationRange.max, std::max(2.0 * amount, kFileRounding));
     }
     throw InconsistentResult("the medial axis and the dual complex of the balls differ in topology, even after " +
                              std::to_string(kMaxRetries) +
@@ -181,8 +181,7 @@ MedialAxis axis_of_perturbed(std::span<const Ball> balls, const MedialAxisOption
 }
 
 void validate(const MedialAxisOptions& options) {
-    require(options.perturbation >= 0.0 && options.perturbation <= kMaxPerturbation,
-            "the perturbation must lie between 0 and 0.01 radii");
+    require(kPerturbationRange.contains(options.perturbation), "the perturbation must lie between 0 and 0.01 radii");
 }
 
 /// Reports the progress of a repeated computation, which itself begins again.

@@ -41,16 +41,11 @@ namespace {
 
 constexpr std::string_view kMidsurfaceStage = "midsurface";
 
-// Parts of sheets narrower than this part of their thickness are crumbs, and those with less area than a square of it.
-constexpr double kLeastWidth = 0.5;
 // Seams where four sheets meet are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7 radii.
 // Without this sheets that cross stay joined at the ends of their seam; at 0.25 sheets of thin panels become one.
 constexpr double kSeamWidth = 0.1;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;
-// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
-// are longer run along a wall, as where the free edge of a rib ends in it.
-constexpr double kFarthest = 1.6;
 // A wall floods no face that has a vertex with a radius below this part of its own: from a wall balls grow towards
 // junctions, and what shrinks runs into a convex edge. At 0.5 plates get spikes, thin as that; radii differ by some
 // hundredths in one wall.
@@ -366,7 +361,7 @@ void extend(Midsurface& surface, const MedialComplex& complex, const DistanceIns
             }
             const Point direction = directions.of(static_cast<Index>(v));
             if (direction != Point()) {
-                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], kFarthest, distance);
+                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], distance);
                 ends[v] = ends[v] + std::max(way.value_or(0.0), 0.0) * direction;
             }
         },

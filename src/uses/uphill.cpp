@@ -17,8 +17,6 @@ constexpr std::array kSteps{0.5, 0.08, 0.0125, 0.002};
 
 constexpr double kFirstStep = 1e-5;  // of the diagonal: the shortest step, for balls that start in a sharp edge
 
-constexpr double kFlat = 0.001;  // of the radius: a smaller gain is not worth a step
-
 constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
 
 // Never reached: on the way out of an edge a radius grows by a quarter or more with each step, and 1e5 is 1.25^52.
@@ -46,7 +44,7 @@ class Hill {
     // A place near one whose depth is known, which differs by the distance at most.
     Depth depth_near(const Depth& known, const Point& place) const {
         const double way = distance(place, known.place);
-        const double bound = kBoundSlack * (std::abs(known.value) + way);
+        const double bound = (1.0 + kFileRounding) * (std::abs(known.value) + way);
         std::optional<Point> nearest = solid_.nearest(place, bound);
         if (!nearest) {
             nearest = solid_.nearest(place);
@@ -84,7 +82,6 @@ class Hill {
     }
 
    private:
-    static constexpr double kBoundSlack = 1.001;  // a bound near the distance makes the search quick
     // Places on the boundary have no gradient of their own, and take that of a place beside, where few faces lie.
     static constexpr Point kAside{0.48, 0.6, 0.64};
 
@@ -137,7 +134,7 @@ Ball uphill(const Solid& solid, const Ball& start, double slope, double most) {
         for (const double part : kSteps) {
             const double length = std::max(part * at.value, hill.first_step());
             step = hill.step_from(at, direction, length);
-            if (step.place || step.most <= kFlat * at.value || length == hill.first_step()) {
+            if (step.place || step.most <= kNoGrowth * at.value || length == hill.first_step()) {
                 break;
             }
         }

@@ -11,6 +11,9 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Of the thickness: narrower parts of sheets are crumbs, and do not tell where a wall is.
+inline constexpr double kLeastWidth = 0.5;
+
 struct SurfacePart {
     double area = 0.0;
     double volume = 0.0;  ///< area × thickness

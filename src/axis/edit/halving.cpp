@@ -17,9 +17,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Tolerances: shorter edges stay whole. The error of linear radii falls with the square of the length.
-constexpr double kLeastHalvedEdge = 0.25;
-
 // Which edges and faces are looked at.
 struct Asked {
     std::vector<Index> edges;
@@ -71,8 +68,7 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
     };
     // Those on sharp edges of the solid lie where they should.
     const auto may_be_halved = [&](Index e) {
-        return length(e) >= kLeastHalvedEdge * options.tolerance &&
-               std::ranges::any_of(complex.edges[e], [&](Index v) { return !is_on_sharp_edge(complex, v); });
+        return std::ranges::any_of(complex.edges[e], [&](Index v) { return !is_on_sharp_edge(complex, v); });
     };
     Halving result{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};
     for (std::size_t i = 0; i < edges.size(); ++i) {

@@ -15,7 +15,6 @@ namespace scaleaxis::inline v1 {
 
 struct HalvingOptions {
     double error = 0.0;                           ///< how far from touching the solid balls may be
-    double tolerance = 0.0;                       ///< of the sampling: edges much shorter stay
     std::span<const std::uint8_t> asked_faces{};  ///< 1: look at these and their edges; empty: at all
 };
 

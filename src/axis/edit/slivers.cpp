@@ -17,6 +17,7 @@
 #include "axis/edit/triangulated.hpp"
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "scaleaxis/cleaning.hpp"
@@ -432,9 +433,8 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
             const auto& [area, sheet, width] = slivers[k];
             // Across first; where that would change the homotopy type, along. Other sheets may stand in the way, with
             // edges as short, or with triangles as flat as a folded seam makes them.
-            constexpr double kAny = std::numeric_limits<double>::infinity();
             for (const auto& [length, height] :
-                 {std::pair(width, kAny), std::pair(kMostEdge * width, width / kMostEdge)}) {
+                 {std::pair(width, kInfinity), std::pair(kMostEdge * width, width / kMostEdge)}) {
                 const auto size_of = [size = length](Index, Index) { return size; };
                 is_changed |= contraction.contract(faces_of[sheet], size_of);
                 if (contraction.is_any_left(faces_of[sheet])) {

@@ -31,7 +31,6 @@ constexpr std::string_view kSharpEdgesStage = "sharp edges";
 // Degrees. Sheets of less than the second are mostly filtered, and lines may be those of rough surfaces.
 constexpr double kLeastAngle = 40.0;
 constexpr double kClearAngle = 60.0;
-constexpr double kMostAngle = 178.0;     // blades
 constexpr double kLeastLine = 1.0;       // tolerances: shorter lines are those of rough surfaces
 constexpr double kLeastFaintLine = 8.0;  // the same for lines that are not clear
 
@@ -72,7 +71,7 @@ std::vector<EdgeLine> lines_among(std::vector<SharpEdge> edges, const SharpEdgeO
         const auto& [a, b] = edge.normals;
         // In a wedge the radius is the distance from the edge times the cosine of half the angle.
         const double growth = std::sqrt(std::max(0.0, 0.5 * (1.0 + dot(a, b))));
-        return angle_between(a, b) > kMostAngle || options.scale * growth >= 1.0;
+        return options.scale * growth >= 1.0;
     });
     return edge_lines(edges);
 }

@@ -31,13 +31,9 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // All lengths are in tolerances.
-constexpr double kPlaceStep = 1.0;  // between places on a line: as close as the border's vertices at most
 constexpr double kInnerCost = 3.0;  // of a way inside a sheet, which leaves a part of it beyond, beside its border
 constexpr double kOffCost =
     8.0;  // of a way off the bisector of the line, to other sheets, beside one away from the line
-constexpr double kMostWay = 2.0;      // of the line and the ways to it: the way through the complex
-constexpr double kMostOff = 0.5;      // of the radius and the place of balls, those of a union
-constexpr double kLeastRun = 3.0;     // shorter parts of a line are reached from corner to corner, or not at all
 constexpr double kFootReach = 2.0;    // of the way to the nearest vertex: how far the foot of a corner may be
 constexpr double kSimilarFeet = 1.1;  // so many times the least distance in radii: then the nearest one counts
 constexpr int kPartsOfLoop = 3;       // the shortest way below a third of a loop does not lead around the other side
@@ -113,8 +109,9 @@ class Strips {
         for (const EdgeLine& line : lines) {
             const int count = line.ends[0] == line.ends[1] ? kPartsOfLoop : 1;
             const double length = line.length() / count;
-            // A place between the ends at least: else the strip would end in an edge between two corners.
-            const double step = std::min(kPlaceStep * tolerance_, 0.5 * length);
+            // Places as close as vertices of the border at most; one between the ends at least: else the strip would
+            // end in an edge between two corners.
+            const double step = std::min(tolerance_, 0.5 * length);
             for (int i = 0; i < count; ++i) {
                 const auto end_of = [&](int k) {
                     return line.is_closed() || k % count != 0 ? next_end + k % count : line.ends[k == 0 ? 0 : 1];
@@ -226,9 +223,8 @@ class Strips {
                        ? kInfinity
                        : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
-        const double most = kInnerCost * kMostWay * (line.length() + 2.0 * reach) * (1.0 + kCreaseReach);
         const auto is_foot = [&goals = part.feet[1]](Index v) { return std::ranges::binary_search(goals, v); };
-        return cheapest_way(neighbors_, from, most, is_foot, cost);
+        return cheapest_way(neighbors_, from, is_foot, cost);
     }
 
     // Triangles between a way and the places above it.
@@ -293,18 +289,17 @@ class Strips {
                 const double radius = radii.at(corner);
                 const View view = seen_from(complex_.vertices[corner], line);
                 wanted += radius / 3.0;
-                if (view.farther - view.nearer > 2.0 * kMostOff * tolerance_ ||
-                    radius < view.nearer - kMostOff * tolerance_) {
+                if (view.farther - view.nearer > 2.0 * tolerance_ || radius < view.nearer - tolerance_) {
                     result[f] = 0;
                 }
             }
-            is_inside[f] = wanted > rooms[way.size() + f] + kMostOff * tolerance_ ? 0 : 1;
+            is_inside[f] = wanted > rooms[way.size() + f] + tolerance_ ? 0 : 1;
         }
         // Short stretches that are off go on.
         for_each_run(std::vector(result), [&](std::size_t first, std::size_t last) {
             const double length =
                 line.positions[last_place_of(strip[last - 1])] - line.positions[number_of(strip[first][2])];
-            if (length < kLeastRun * tolerance_) {
+            if (length < tolerance_) {
                 std::ranges::fill(std::span(result).subspan(first, last - first), std::uint8_t{1});
             }
         });
@@ -333,7 +328,7 @@ class Strips {
         const std::size_t from = number_of(run.front()[2]);
         const std::size_t to = last_place_of(run.back());
         const double length = line.positions[to] - line.positions[from];
-        if (!(is_first && is_last) && length < kLeastRun * tolerance_) {
+        if (!(is_first && is_last) && length < tolerance_) {
             return false;
         }
         std::map<std::size_t, Index> targets;

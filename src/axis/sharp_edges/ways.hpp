@@ -10,16 +10,17 @@
 #include <utility>
 #include <vector>
 
+#include "base/numbers.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
 
-/// The vertices of the cheapest way along edges, both ends included; empty if it costs more than `most`.
+/// The vertices of the cheapest way along edges, both ends included; empty if there is none.
 /// \param neighbors of each vertex \param from where it may begin \param is_goal may it end at this vertex?
 /// \param cost_of(v, next) of a step, ≥ 0; infinity: there is none
 template <class IsGoal, class CostOf>
-std::vector<Index> cheapest_way(const IndexLists& neighbors, std::span<const Index> from, double most,
-                                const IsGoal& is_goal, const CostOf& cost_of) {
+std::vector<Index> cheapest_way(const IndexLists& neighbors, std::span<const Index> from, const IsGoal& is_goal,
+                                const CostOf& cost_of) {
     std::unordered_map<Index, std::pair<double, Index>> reached;  // cost, vertex before
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
@@ -35,7 +36,7 @@ std::vector<Index> cheapest_way(const IndexLists& neighbors, std::span<const Ind
         }
         for (const Index next : neighbors[v]) {
             const double all = cost + cost_of(v, next);
-            if (!(all <= most)) {
+            if (all == kInfinity) {
                 continue;
             }
             const auto [known, is_new] = reached.try_emplace(next, all, v);

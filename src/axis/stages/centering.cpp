@@ -56,9 +56,6 @@ constexpr double kSettledMove = 1e-4;
 // sheets one by less may.
 constexpr double kHopeless = 1e-3;
 
-// Of the radius: a centre that moves by less stays in the solid.
-constexpr double kMostMove = 0.5;
-
 // Of the tolerance: balls that stick out of the solid by more are to do so. The perturbation of the balls of a union,
 // and rounding, are less.
 constexpr double kMostShrinking = 0.1;
@@ -78,10 +75,6 @@ constexpr std::size_t kBlocksOfProgress = 16;
 
 // Keeps a move from following directions in which the planes hardly differ. In units of squared sines.
 constexpr double kDamping = 0.01;
-
-// Of how far a ball is from touching the planes of its contacts: a foot of a strip that comes closer to touching them
-// may become smaller for it.
-constexpr double kBetterFit = 0.5;
 
 struct ContactPlane {
     Point normal;
@@ -437,7 +430,8 @@ class CenteringBatch {
         }
         const Point way = move_to_middle(vertex.planes);
         const Point& start = complex_.vertices[vertex.vertex];
-        if (!(distance(vertex.center + way, start) <= std::min(tolerance_, kMostMove * vertex.radius))) {
+        // In the ball it starts from it stays in the solid.
+        if (!(distance(vertex.center + way, start) < std::min(tolerance_, vertex.radius))) {
             return;
         }
         vertex.center = vertex.center + way;
@@ -485,10 +479,10 @@ class CenteringBatch {
         return result;
     }
 
-    // A foot of a strip comes to the seam, where the sheet that it was found on ends: often balls are smaller there.
+    // A foot of a strip comes to the seam, where the sheet that it was found on ends: often balls are smaller there,
+    // and closer to touching the planes of their contacts.
     bool fits_better(const Centering& vertex, double radius) const {
-        return vertex.is_foot && radius > vertex.radius - tolerance_ &&
-               vertex.misfit_of(radius) < kBetterFit * vertex.misfit;
+        return vertex.is_foot && radius > vertex.radius - tolerance_ && vertex.misfit_of(radius) < vertex.misfit;
     }
 
     const MedialComplex& complex_;
@@ -550,8 +544,8 @@ class FaceHalving {
         std::size_t known = 0;  // vertices that have been looked at
         for (int round = 0; round < kMostCenteringRounds; ++round) {
             const std::vector<std::uint8_t> faces = touching_faces_beside(known);
-            const Halving halving = edges_to_halve(
-                complex_, solid_, {.error = kFaceError * tolerance_, .tolerance = tolerance_, .asked_faces = faces});
+            const Halving halving =
+                edges_to_halve(complex_, solid_, {.error = kFaceError * tolerance_, .asked_faces = faces});
             if (halving.count() == 0) {
                 break;
             }

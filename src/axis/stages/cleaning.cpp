@@ -34,8 +34,6 @@ constexpr double kOpeningSlack =
 // Of an edge whose ends are to go: where its inside may have to stay.
 constexpr std::array kPartsLookedAt{0.25, 0.5, 0.75};
 constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
-constexpr double kSpurFactor = 1.5;   // a way across faces is longer than a straight one
-constexpr double kTipFactor = 0.25;   // of T: what the last ball of a curve sticks out by at least
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
@@ -395,7 +393,7 @@ class FaceCollapse {
             const auto way = [&](Index tip) { return distance(complex.vertices[tip], complex.vertices[next]); };
             const double thickness = divided_.radii[tips_[v]] + way(tips_[v]) - divided_.radii[next];
             if (has_faces_[edge] == 0 || remainder_.faces_at_edge[edge].count != 0 ||
-                way(tips_[v]) > kSpurFactor * divided_.vertex_paths[next] || thickness > kCurveFactor * thickness_) {
+                way(tips_[v]) > divided_.vertex_paths[next] || thickness > kCurveFactor * thickness_) {
                 return;
             }
             remainder_.remove_edge(complex, edge);
@@ -507,7 +505,7 @@ void collapse_curves(const Divided& divided, double thickness, Remainder& remain
         std::vector<Index> waiting;
         for (Index i = last; i != kNone; i = burnt[i].feeder) {
             waiting.push_back(i);
-            if (kept.beyond(ball_at(burnt[i].from)) >= kTipFactor * thickness) {
+            if (kept.beyond(ball_at(burnt[i].from)) >= 0.0) {
                 for (const Index k : waiting) {
                     is_kept[k] = 1;
                     kept.add(ball_at(burnt[k].from));

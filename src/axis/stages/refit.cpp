@@ -32,7 +32,7 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
         complex =
             centered_as_it_is(std::move(complex), solid, {.tolerance = options.tolerance}, options.feet, execution)
                 .complex;
-        const Halving halving = edges_to_halve(complex, solid, {.error = error, .tolerance = options.tolerance});
+        const Halving halving = edges_to_halve(complex, solid, {.error = error});
         const std::size_t count = halving.count();
         if (count == 0 || round == kMostHalvings) {
             complex = simplify(complex, {.error = error}, execution).complex;

@@ -34,8 +34,7 @@ constexpr std::string_view kSimplificationStage = "simplification";
 // The error grows to that asked for in these steps, so that collapses which cost little come first everywhere.
 constexpr std::array kErrorSteps{0.25, 0.5, 1.0, 1.0};
 
-// Where a number of vertices is asked for: the first error as a part of the diagonal, and how it grows.
-constexpr double kFirstError = 1e-4;
+// Where a number of vertices is asked for: how the error grows, from a small one on.
 constexpr double kErrorGrowth = 1.4;
 
 // From this error on, as a part of the diagonal, seams, borders and sheets are no longer kept: that would cost more
@@ -660,7 +659,7 @@ void validate(const MedialComplex& complex, const SimplifyOptions& options) {
 
 MedialComplex linear_complex(const MedialComplex& complex, const SimplifyOptions& options) {
     const Box box = box_around(complex.vertices);
-    const double error = options.error.value_or(kFirstError * box.diagonal());
+    const double error = options.error.value_or(kSmallError * box.diagonal());
     return linearized(complex, std::max(kLinearPart * error, std::numeric_limits<double>::min()));
 }
 
@@ -674,7 +673,7 @@ double collapse(Collapser& collapser, const SimplifyOptions& options, const Exec
         }
         return *options.error;
     }
-    double error = kFirstError * diagonal;
+    double error = kSmallError * diagonal;
     for (; collapser.count() > least_count && error < diagonal; error *= kErrorGrowth) {
         if (error > kClassError * diagonal) {
             collapser.release_classes(options.anchors);

@@ -20,6 +20,9 @@ namespace scaleaxis::inline v1 {
 /// exactly.
 inline constexpr double kClearlyWider = 0.5;
 
+/// Of the diagonal: the error where none is asked for, as of linear radii.
+inline constexpr double kSmallError = 1e-4;
+
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
 

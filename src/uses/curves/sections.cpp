@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/angles.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/centerlines.hpp"
 #include "uses/curves/ways_out.hpp"
@@ -29,18 +30,18 @@ Section section_at(const Solid& solid, const Point& p, const Point& tangent, dou
     std::ranges::transform(kReaches, reaches.begin(), [&](double reach) { return reach * radius; });
     const std::vector<double> ways = ways_out(solid, p, tangent, kSectors, reaches);
     Section result;
-    result.is_closed = std::ranges::find(ways, kNoWayOut) == ways.end();
+    result.is_closed = std::ranges::find(ways, kInfinity) == ways.end();
     double sum = 0.0;
     double known = 0.0;
     for (const double way : ways) {
-        if (way != kNoWayOut) {
+        if (way != kInfinity) {
             sum += way * way;
             known += 1.0;
         }
     }
     result.area = known > 0.0 ? std::numbers::pi * sum / known : 0.0;
     for (int k = 0; k < kSectors / 2; ++k) {
-        if (ways[k] != kNoWayOut && ways[k + kSectors / 2] != kNoWayOut) {
+        if (ways[k] != kInfinity && ways[k + kSectors / 2] != kInfinity) {
             const double width = ways[k] + ways[k + kSectors / 2];
             result.least_width = result.least_width > 0.0 ? std::min(result.least_width, width) : width;
             result.largest_width = std::max(result.largest_width, width);
@@ -59,7 +60,7 @@ std::array<Point, 2> normals_to(const Point& direction) {
 std::vector<double> ways_out(const Solid& solid, const Point& p, const Point& direction, int ways,
                              std::span<const double> reaches) {
     const auto [u, v] = normals_to(direction);
-    std::vector<double> result(ways, kNoWayOut);
+    std::vector<double> result(ways, kInfinity);
     std::vector<int> waiting(ways);
     for (int k = 0; k < ways; ++k) {
         waiting[k] = k;

@@ -6,6 +6,7 @@
 #include <compare>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <string_view>
@@ -22,6 +23,7 @@
 #include "sampling/inner_cells.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
+#include "scaleaxis/ranges.hpp"
 #include "scaleaxis/volume.hpp"
 #include "solid/image/interpolant_euler.hpp"
 #include "solid/zero_set/trilinear.hpp"
@@ -46,17 +48,13 @@ constexpr std::string_view kBlockStage = "block";
 // million times what the predicates need.
 constexpr double kJitter = 1e-3;
 
-constexpr double kMostMove = 0.01;  // of a radius, as `MedialAxisOptions::perturbation`
-
-// A ball between samples is larger than the depth of the voxel nearest to its centre by less than this: half the
-// diagonal of a voxel to the voxel's centre, and from a crossing of the surface to a sample, which is in the same cell,
-// the whole diagonal.
-constexpr double kRadiusSlack = 1.5 * 1.7320508075688772 + 10.0 * kJitter;
-
 // Faces are as large as samples are apart, but for those between few large balls: these ask for more.
 constexpr double kFaceSlack = 3.0;
 
-double largest_radius(double depth) { return depth + kRadiusSlack; }
+// A ball between samples is larger than the depth of the voxel nearest to its centre by less than half the diagonal of
+// a voxel to the voxel's centre, and from a crossing of the surface to a sample, which is in the same cell, the whole
+// one.
+double largest_radius(double depth) { return depth + 1.5 * std::numbers::sqrt3 + 10.0 * kJitter; }
 
 /// How far from the rim of the array the boundary of the grown union is known.
 double unknown_margin(double radius, double scale) { return (scale + 3.0) * radius + 1.0; }
@@ -214,9 +212,9 @@ BlockCells cells_of(const VolumeBlock& block, const BlockField& field, std::span
         if (is_ghost(v[0])) {  // they come first
             return;
         }
-        constexpr double kMost = 1e9;  // voxels: more than a volume has along an axis
-        const Circumsphere found = circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), kMost);
-        if (found.radius < kMost && contains(box, {found.center, found.radius}) && field.is_inside(found.center)) {
+        const Circumsphere found =
+            circumsphere(t.point(v[0]), t.point(v[1]), t.point(v[2]), t.point(v[3]), box.diagonal());
+        if (contains(box, {found.center, found.radius}) && field.is_inside(found.center)) {
             sphere = found;
         }
     });
@@ -228,7 +226,7 @@ std::vector<Ball> balls_near(const Box& core, const BlockCells& cells, std::size
                              double reach) {
     std::vector<Ball> balls = balls_of_cells(cells, samples);
     std::erase_if(balls, [&](const Ball& ball) {
-        return distance_to(core, ball.center) > scale * (1.0 + kMostMove) * ball.radius + reach;
+        return distance_to(core, ball.center) > scale * (1.0 + kPerturbationRange.max) * ball.radius + reach;
     });
     tasks::parallel_sort(balls.begin(), balls.end(), [](const Ball& a, const Ball& b) {
         return std::pair(order_of(a.center), a.radius) < std::pair(order_of(b.center), b.radius);
@@ -384,7 +382,7 @@ void check_block(const VolumeBlock& block, std::span<const float> values, const 
         count *= static_cast<std::size_t>(block.sizes[axis]);
     }
     require(values.size() == count, "a block needs as many values as its sizes say");
-    require(options.move >= 0.0 && options.move <= kMostMove, "balls are moved by 0 to 0.01 radii");
+    require(kPerturbationRange.contains(options.move), "balls are moved by 0 to 0.01 radii");
     require(options.largest_depth >= 0.0, "the largest depth must be a number of at least 0");
 }
 

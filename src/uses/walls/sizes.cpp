@@ -23,6 +23,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "scaleaxis/thickness.hpp"
+#include "scaleaxis/walls.hpp"
 #include "spatial/point_tree.hpp"
 #include "spatial/slab_tree.hpp"
 #include "uses/divided_edges.hpp"
@@ -44,9 +45,8 @@ constexpr double kExcess = 0.1;
 // as long as `kEdgeOfSize` allows differs by less.
 constexpr double kEven = 0.2;
 
-// The longest edge at which the surface is looked at: of the diagonal, as `WallOptions::edge` has it, and in sizes.
+// The longest edge, in sizes, at which the surface is looked at, besides `WallOptions::edge`.
 // Tetrahedra of the background are as long, and stay in a wall; twice as long they would leave bends of sheet metal.
-constexpr double kEdgeOfDiagonal = 0.03;
 constexpr double kEdgeOfSize = 8.0;
 
 constexpr double kRoom = 1.01;  // more than the rounding of balls that fill the box
@@ -120,7 +120,7 @@ class SizeSearch {
         // No ball in the solid is larger than its box is wide; larger ones outside are next to a wall of the solid.
         const Point sides = solid.bounds().max - solid.bounds().min;
         most_radius_ = std::min(options.elements_across * most_, kRoom * std::min({sides.x, sides.y, sides.z})) / 2.0;
-        data_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), kEdgeOfDiagonal * diagonal);
+        data_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), WallOptions{}.edge * diagonal);
     }
 
     std::shared_ptr<const SizeData> run() && {
