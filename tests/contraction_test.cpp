@@ -241,6 +241,25 @@ TEST(Contraction, DrawsANarrowSheetBetweenTwoSeamsTogether) {
     }
 }
 
+TEST(Contraction, CutsAFlatTriangleBetweenThreeSeamsWhoseSidesAreTooLong) {
+    // Two more triangles at each of its sides, of sheets of their own.
+    std::vector<Point> vertices{{0, 0, 0}, {3, 0, 0}, {1.4, 1e-4, 0}};
+    std::vector<std::vector<Index>> faces{{0, 1, 2}};
+    for (const auto& [p, q] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0)}) {
+        for (const double z : {-1.0, 1.0}) {
+            vertices.push_back(midpoint(vertices[p], vertices[q]) + Point{0, p == 0 ? -1.0 : 1.0, z});
+            faces.push_back({p, q, static_cast<Index>(vertices.size()) - 1});
+        }
+    }
+    const MedialComplex complex = with_marks(complex_by_hand(vertices, faces));
+    ASSERT_EQ(complex.sheets, 7);
+    const MedialComplex result = without_slivers(complex, 0.1);
+    ASSERT_NO_FATAL_FAILURE(expect_well_formed(result));
+    EXPECT_EQ(homology(result), homology(complex));
+    EXPECT_EQ(result.sheets, 6);
+    EXPECT_EQ(result.vertices.size(), vertices.size());
+}
+
 TEST(Contraction, LeavesSeamsWhereTheyAreWhenItDrawsAFlapIn) {
     for (const bool has_flap_first : {false, true}) {
         SCOPED_TRACE(has_flap_first);

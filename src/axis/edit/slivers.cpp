@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/halving.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
@@ -196,13 +197,19 @@ class Contraction {
             std::ranges::sort(edges);
             for (const auto& [length, edge] : edges) {
                 const auto& [p, q] = edge;
-                if (!star(p).empty() && !star(q).empty() && may_contract(p, q)) {
-                    contract_edge(p, q);
-                    is_changed = true;
-                }
+                is_changed |= contract(p, q);
             }
         }
         return is_any_changed;
+    }
+
+    // Contracts an edge if its ends are still there and it may go. Returns whether it has.
+    bool contract(Index p, Index q) {
+        const bool may_go = !star(p).empty() && !star(q).empty() && may_contract(p, q);
+        if (may_go) {
+            contract_edge(p, q);
+        }
+        return may_go;
     }
 
     // The faces at the vertices of some.
@@ -414,13 +421,67 @@ class Contraction {
     std::vector<std::uint8_t> has_vertex_;
 };
 
-}  // namespace
-
-MedialComplex without_slivers(MedialComplex complex, double tolerance) {
-    const std::vector<Sliver> slivers = slivers_of(complex, tolerance);
-    if (slivers.empty()) {
-        return complex;
+// Of triangles without height: the longest side, and the corner beside it.
+std::vector<std::array<Index, 2>> flat_triangles(const MedialComplex& complex, const std::vector<Sliver>& slivers) {
+    std::vector<std::array<Index, 2>> result;
+    const IndexLists faces_of = faces_of_sheets(complex);
+    for (const Sliver& sliver : slivers) {
+        for (const Index f : faces_of[sliver.sheet]) {
+            const std::span<const Index> corners = complex.faces[f];
+            const auto side_of = [&](Index e) {
+                return complex.vertices[complex.edges[e][1]] - complex.vertices[complex.edges[e][0]];
+            };
+            const Index e =
+                *std::ranges::max_element(complex.face_edges[f], {}, [&](Index k) { return norm(side_of(k)); });
+            const auto& [p, q] = complex.edges[e];
+            const Index v = *std::ranges::find_if(corners, [&](Index k) { return k != p && k != q; });
+            const Point from = complex.vertices[v] - complex.vertices[p];
+            const double part = dot(from, side_of(e)) / squared_norm(side_of(e));
+            if (corners.size() == 3 && part > 0.0 && part < 1.0 &&
+                norm(from - part * side_of(e)) < sliver.width / kMostEdge) {
+                result.push_back({e, v});
+            }
+        }
     }
+    return result;
+}
+
+// Cuts the longest side of each flat triangle at the corner beside it, and contracts it there: between three seams none
+// of its sides may be. Those that may not either stay whole.
+MedialComplex without_flat_triangles(const MedialComplex& complex, std::vector<std::array<Index, 2>> flat) {
+    while (!flat.empty()) {
+        std::vector<Index> corner_at(complex.edges.size(), kNone);
+        Halving cuts{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};
+        for (const auto& [e, v] : flat) {
+            corner_at[e] = v;
+            cuts.is_halved[e] = 1;
+        }
+        MedialComplex cut = halved(complex, cuts);
+        std::vector<std::array<Index, 3>> pairs;  // the corner, the new vertex, which is the corner once more; the side
+        for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+            if (const Index v = corner_at[e]; v != kNone) {
+                const Index added = static_cast<Index>(complex.vertices.size() + pairs.size());
+                cut.vertices[added] = complex.vertices[v];
+                cut.radii[added] = complex.radii[v];
+                cut.vertex_origins[added] = complex.vertex_origins[v];
+                pairs.push_back({v, added, e});
+            }
+        }
+        Contraction contraction(std::move(cut));
+        flat.clear();
+        for (const auto& [v, added, e] : pairs) {
+            if (contraction.contract(v, added)) {
+                flat.push_back({e, v});
+            }
+        }
+        if (flat.size() == pairs.size()) {
+            return std::move(contraction).result();
+        }
+    }
+    return complex;
+}
+
+MedialComplex contracted(MedialComplex complex, const std::vector<Sliver>& slivers) {
     complex = with_triangles_at(vertices_of_slivers(slivers, complex), complex);
     const IndexLists faces_of = faces_of_sheets(complex);
     Contraction contraction(std::move(complex));
@@ -444,6 +505,20 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
         }
     }
     return std::move(contraction).result();
+}
+
+}  // namespace
+
+MedialComplex without_slivers(MedialComplex complex, double tolerance) {
+    std::vector<Sliver> slivers = slivers_of(complex, tolerance);
+    if (slivers.empty()) {
+        return complex;
+    }
+    complex = contracted(std::move(complex), slivers);
+    if (slivers = slivers_of(complex, tolerance); slivers.empty()) {
+        return complex;
+    }
+    return without_flat_triangles(complex, flat_triangles(complex, slivers));
 }
 
 MedialComplex without_short_edges_at_seams(MedialComplex complex, double part) {
