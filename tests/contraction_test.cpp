@@ -260,6 +260,24 @@ TEST(Contraction, CutsAFlatTriangleBetweenThreeSeamsWhoseSidesAreTooLong) {
     EXPECT_EQ(result.vertices.size(), vertices.size());
 }
 
+TEST(Contraction, BringsSeamsToTheBorderOfASheetThatIsFoldedAlongThem) {
+    // A seam of three sheets, two of which go on around its end up to a vertex of the border.
+    const auto star = [](double gap, double fold) {
+        const double x = std::cos(fold);
+        const double y = std::sin(fold);
+        return complex_by_hand({{0, 0, 0}, {0, 0, 1}, {-1, 0, 1}, {x, y, 1}, {x, -y, 1}, {0, 0, 1 + gap}},
+                               {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {1, 3, 5}, {1, 4, 5}});
+    };
+    const MedialComplex complex = star(0.05, 1.05);  // 60 degrees on both sides
+    ASSERT_EQ(complex.sheets, 2);
+    const MedialComplex result = with_seams_to_borders(complex, 0.1);
+    ASSERT_NO_FATAL_FAILURE(expect_well_formed(result));
+    EXPECT_EQ(homology(result), homology(complex));
+    EXPECT_EQ(result.sheets, 3);
+    EXPECT_EQ(with_seams_to_borders(star(0.2, 1.05), 0.1).sheets, 2) << "too far";
+    EXPECT_EQ(with_seams_to_borders(star(0.05, 1.4), 0.1).sheets, 2) << "smooth";
+}
+
 TEST(Contraction, LeavesSeamsWhereTheyAreWhenItDrawsAFlapIn) {
     for (const bool has_flap_first : {false, true}) {
         SCOPED_TRACE(has_flap_first);

@@ -67,8 +67,8 @@ SCALEAXIS_EXPORT CleanedComplex clean(const MedialComplex& complex, const CleanO
 /// Draws sheets together that are narrower on average than `tolerance` / 2, or than a quarter of their smallest ball,
 /// by contractions that keep the homotopy type. Where four sheets of a solid meet in a seam, those of a union meet by
 /// threes, and what lies between has no width once its balls touch the solid (see `center`). Sheets with balls of
-/// radius 0 stay. \param tolerance δ of the sampling, a length > 0 \throws InvalidOption, UnusableInput (see `check`),
-/// Cancelled
+/// radius 0 stay. Seams that end less than `tolerance` before the border of a sheet folded along them end on it. \param
+/// tolerance δ of the sampling, a length > 0 \throws InvalidOption, UnusableInput (see `check`), Cancelled
 SCALEAXIS_EXPORT MedialComplex contract_slivers(const MedialComplex& complex, double tolerance,
                                                 const Execution& execution = {});
 

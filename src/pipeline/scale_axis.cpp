@@ -247,7 +247,8 @@ void center_balls(StageData& data, const Execution& execution) {
 }
 
 void draw_slivers_together(StageData& data, const Execution&) {
-    data.result.complex = without_slivers(std::move(data.result.complex), data.given.tolerance);
+    const double tolerance = data.given.tolerance;
+    data.result.complex = without_slivers(with_seams_to_borders(std::move(data.result.complex), tolerance), tolerance);
 }
 
 void filter_narrow_sheets(StageData& data, const Execution& execution) {

@@ -538,7 +538,8 @@ def contract_slivers(
 ) -> MedialComplex:
     """Draws sheets together that are narrower on average than half of `tolerance`, or than a quarter of their smallest
     ball, by contractions, which keep the topology. Where four sheets of a solid meet in a seam, those of a union meet by
-    threes, and what lies between has no width once balls touch the solid.
+    threes, and what lies between has no width once balls touch the solid. Seams that end less than `tolerance` before the
+    border of a sheet folded along them end on it.
 
     tolerance: δ of the sampling as a length.
     """

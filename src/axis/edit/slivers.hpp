@@ -13,6 +13,10 @@ namespace scaleaxis::inline v1 {
 /// one seam, a fifth between them has no width
 MedialComplex without_slivers(MedialComplex complex, double tolerance);
 
+/// Seams that end less than a `tolerance` before the border of a sheet that is folded along them end on it, so that the
+/// sheets on both sides of them are two.
+MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance);
+
 /// Contracts edges with an end on a seam that are shorter than this part of the smaller radius at their ends where that
 /// keeps the homotopy type.
 MedialComplex without_short_edges_at_seams(MedialComplex complex, double part);
