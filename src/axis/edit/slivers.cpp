@@ -438,9 +438,9 @@ std::vector<std::array<Index, 2>> flat_triangles(const MedialComplex& complex, c
             };
             const Index e =
                 *std::ranges::max_element(complex.face_edges[f], {}, [&](Index k) { return norm(side_of(k)); });
-            const auto& [p, q] = complex.edges[e];
-            const Index v = *std::ranges::find_if(corners, [&](Index k) { return k != p && k != q; });
-            const Point from = complex.vertices[v] - complex.vertices[p];
+            const Index v =
+                *std::ranges::find_if(corners, [&](Index k) { return std::ranges::count(complex.edges[e], k) == 0; });
+            const Point from = complex.vertices[v] - complex.vertices[complex.edges[e][0]];
             const double part = dot(from, side_of(e)) / squared_norm(side_of(e));
             if (corners.size() == 3 && part > 0.0 && part < 1.0 &&
                 norm(from - part * side_of(e)) < sliver.width / kMostEdge) {
