@@ -93,7 +93,7 @@ TEST(Simplify, KeepsToItsErrorOnBothSides) {
         double of_given;
     };
     for (const auto& [error, of_result, of_given] :
-         {Bound{0.005, 1.4, 1.4}, Bound{0.025, 1.1, 1.1}, Bound{0.1, 1.0, 1.0}}) {
+         {Bound{0.005, 1.4, 1.4}, Bound{0.025, 1.05, 1.05}, Bound{0.1, 1.0, 1.0}}) {
         const SimplifiedComplex simplified = simplify(fine, {.error = error});
         ASSERT_NO_FATAL_FAILURE(expect_consistent(simplified.complex));
         EXPECT_LT(simplified.complex.vertices.size(), last) << "a larger error, and not fewer vertices";
