@@ -19,16 +19,21 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// A ball is seen from a point if balls along the way leave no more than this part of it uncovered; a step shorter than
-// this part of the remaining way meets a surface, and edges of 6 degrees and more let through. Balls that the surface
-// cuts shrink to touch it: by this part at least, and to it at most. Half of it costs a third more queries at sharp
-// edges; at twice of it, walls a tenth as thick as the limit may be leapt over.
-constexpr double kLeastPart = 0.05;
+// A ball is seen from a point if balls along the way leave no more than this part of it uncovered. Half of it costs a
+// third more queries at sharp edges; at twice of it, walls a tenth as thick as the limit may be leapt over.
+constexpr double kUnseen = 0.05;
+
+// A step shorter than this part of the remaining way meets a surface. Edges of 6 degrees and more let through.
+constexpr double kLeastStep = 0.05;
 
 // A ball that touches at a point is as large as this part of the distance of its centre: less at the facets of a curved
 // surface. It is found in five trials about, unless the point is on a sharp edge.
 constexpr double kTouchingPart = 0.99;
 constexpr int kTouchingTrials = 6;
+
+// Balls that the surface cuts shrink to touch it, by these factors at least and at most.
+constexpr double kLeastShrinking = 0.95;
+constexpr double kMostShrinking = 0.05;
 
 constexpr int kMostTrials = 40;  // at a sharp edge each shrinks by a half: down to 1e-12
 
@@ -36,10 +41,15 @@ constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii o
 
 constexpr int kCenterings = 8;  // a ball near a rim, off the middle, takes three
 
-constexpr double kSameSide = 0.98;  // cosine of 11 degrees: contacts nearer to each other count as one
-constexpr std::size_t kMostContacts = 5;
-constexpr double kLeastSlope = 0.2;  // of the slope that counts: below it three halvings lead no farther
+// Contacts this much apart, by the cosine, are not of the same side.
+constexpr double kSameSide = 0.5;
 
+constexpr double kSameContact = 0.98;  // cosine of 11 degrees
+constexpr std::size_t kMostContacts = 5;
+constexpr double kLeastSlope = 0.2;    // of the slope that counts: below it three halvings lead no farther
+constexpr double kSlopeMargin = 1.02;  // of its square, for contacts found a hundredth of a radius beside the centre
+
+constexpr double kLevel = 1e-4;     // growth along a wall that is none
 constexpr int kMostDownSteps = 60;  // a wedge is left by a tenth of its width or more with each step
 constexpr int kDownTrials = 4;      // halvings of a step
 
@@ -62,13 +72,13 @@ Probe probe(const Solid& solid, const Point& p, const Point& inwards, double len
     Probe result{{}, nearest_within(solid, end, length), false};
     result.ball = {end, distance(result.nearest, end)};
     double left = length - result.ball.radius;
-    if (result.ball.radius < kLeastPart * length) {
+    if (result.ball.radius < kLeastStep * length) {
         return result;
     }
-    while (left > kLeastPart * length) {
+    while (left > kUnseen * length) {
         const Point at = p + left * inwards;
         const double step = distance(nearest_within(solid, at, left), at);
-        if (step < kLeastPart * left) {
+        if (step < kLeastStep * left) {
             return result;
         }
         if (step > result.ball.radius) {
@@ -127,12 +137,10 @@ Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) 
             break;
         }
         ball = centered(solid, ball);
-        // Half the angle between the contacts has this cosine; they are found a hundredth of a radius beside the
-        // centre.
-        const double margin = slope / kTouchingPart;
+        // Half the angle between the contacts has this cosine.
         const auto [a, b] = opposite_contacts(solid, ball);
         const double half = 0.5 * distance(a, b);
-        if (half * half >= (1.0 - margin * margin) * ball.radius * ball.radius) {
+        if (half * half >= (1.0 - kSlopeMargin * slope * slope) * ball.radius * ball.radius) {
             break;
         }
     }
@@ -181,7 +189,7 @@ Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards
     const auto shrunk = [&](double length, const Point& contact) {
         const double height = dot(contact - p, inwards);
         const double touching = height > 0.0 ? squared_distance(contact, p) / (2.0 * height) : 0.0;
-        return std::clamp(touching, kLeastPart * length, (1.0 - kLeastPart) * length);
+        return std::clamp(touching, kMostShrinking * length, kLeastShrinking * length);
     };
     double length = most;
     for (int trial = 0; trial < kTouchingTrials; ++trial) {
@@ -231,7 +239,7 @@ std::array<Point, 2> opposite_contacts(const Solid& solid, const Ball& ball) {
         const Point other = nearest_within(solid, ball.center - way * unit(sum), ball.radius + way);
         const Point seen = unit(other - ball.center);
         if (std::ranges::none_of(std::span(contacts).first(count), [&](const Point& contact) {
-                return dot(seen, unit(contact - ball.center)) > kSameSide;
+                return dot(seen, unit(contact - ball.center)) > kSameContact;
             })) {
             contacts[count++] = other;
             sum = sum + seen;
@@ -253,7 +261,7 @@ Ball downhill(const Solid& solid, Ball ball, double slope) {
         const auto [a, b] = opposite_contacts(solid, ball);
         const Point lean = unit(a - ball.center) + unit(b - ball.center);
         const double fall = 0.5 * norm(lean);
-        if (fall < kNoGrowth) {
+        if (fall < kLevel) {
             break;
         }
         double step = 2.0 * ball.radius * fall;  // to the lowest place between a plane and a point
