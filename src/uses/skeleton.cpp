@@ -35,15 +35,15 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSkeletonStage = "skeleton";
-constexpr double kDefaultSpacing = 0.01;  // of the diagonal
-constexpr double kSheetFactor =
-    0.5;  // of the half width of a sheet, also of the curve that burns last; 0.41 in a square
-constexpr double kWideFactor = 2.0;      // of the radius: half the width of a wide sheet
-constexpr double kLeastRise = 0.35;      // of the erosion thickness along a branch; 0.29 in a corner of 90°
-constexpr double kLeastLimbRise = 0.45;  // the same at the end of a limb; 0.42 in a corner of a box
-constexpr double kMissedRidge = 1.3;     // of what the ends of an edge tell: a ridge inside is that much higher
-constexpr double kLeastExcess =
-    0.1;  // of the radius of the fire at its parent: a shorter end is a rough rim, or a hair
+constexpr double kDefaultSpacing = 0.01;      // of the diagonal
+constexpr double kSheetFactor = 0.5;          // of the half width of a sheet, see `SkeletonOptions::significance`
+constexpr double kWideFactor = 2.0;           // of the radius: half the width of a wide sheet
+constexpr double kLastSheetFactor = 0.55;     // the same for the curve that burns last; 0.41 in a square
+constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
+constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kMissedRidge = 1.3;          // of what the ends of an edge tell: a ridge inside is that much higher
+constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
+constexpr double kHairFactor = 0.05;          // the same for curves that were none of sheets
 constexpr double kLeastBlend = 0.25;          // the same where no sheet is wide: limbs part there, as those of a V
 constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
 constexpr double kWindowFactor = 1.5;         // of the fire's disc: half the window of the smoothing
@@ -116,7 +116,7 @@ double thickness_at(const Burnt& burnt, const BurntEdge& edge, Index tip) {
 bool tells_how_it_lies(const Burnt& burnt, const BurntEdge& last, Index tip, double significance) {
     const double path = burnt.vertex_paths[last.to];
     return path > kWideFactor * significance * burnt.radius(last.to) &&
-           thickness_at(burnt, last, tip) > kSheetFactor * path;
+           thickness_at(burnt, last, tip) > kLastSheetFactor * path;
 }
 
 using BurntCurve = std::vector<Index>;
@@ -164,7 +164,7 @@ Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double sign
         std::ranges::reverse(curve);
         const Index tip = edges[curve.front()].from;
         // Hairs at the border of a sheet have small balls.
-        const double least = kLeastExcess * significance * burnt.vertex_times[edges[last].to];
+        const double least = kHairFactor * significance * burnt.vertex_times[edges[last].to];
         const auto sticks_out = [&](Index i) {
             const Index v = edges[i].to;
             return thickness_at(burnt, edges[i], tip) >
