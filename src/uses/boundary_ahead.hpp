@@ -20,16 +20,13 @@ inline DistanceInside distance_inside(const Solid& solid) {
 }
 
 /// The way from a point of the solid to the boundary in some direction: steps as long as the distance to it cannot miss
-/// it. Nothing if it is farther than a rim, or met at less than about 25 degrees, which takes more steps.
-inline std::optional<double> way_to_boundary(const Point& from, const Point& direction, double radius,
+/// it. Nothing if it is farther than `most`, or met at less than about 25 degrees, which takes more steps.
+inline std::optional<double> way_to_boundary(const Point& from, const Point& direction, double radius, double most,
                                              const DistanceInside& distance) {
     constexpr double kReached = 1e-4;  // of the radius
-    // Radii: the corner of 90 degrees of a plate and a rim of 45 degrees are at √2. Ways that are longer run along a
-    // wall, as where the free edge of a rib ends in it.
-    constexpr double kFarthest = 1.6;
     constexpr int kMostSteps = 20;
     double way = 0.0;
-    for (int step = 0; step < kMostSteps && way <= kFarthest * radius; ++step) {
+    for (int step = 0; step < kMostSteps && way <= most * radius; ++step) {
         const double left = distance(from + way * direction);
         way += left;
         if (left <= kReached * radius) {

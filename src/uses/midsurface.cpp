@@ -46,6 +46,9 @@ constexpr std::string_view kMidsurfaceStage = "midsurface";
 constexpr double kSeamWidth = 0.1;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;
+// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
+// are longer run along a wall, as where the free edge of a rib ends in it.
+constexpr double kFarthest = 1.6;
 // A wall floods no face that has a vertex with a radius below this part of its own: from a wall balls grow towards
 // junctions, and what shrinks runs into a convex edge. At 0.5 plates get spikes, thin as that; radii differ by some
 // hundredths in one wall.
@@ -361,7 +364,7 @@ void extend(Midsurface& surface, const MedialComplex& complex, const DistanceIns
             }
             const Point direction = directions.of(static_cast<Index>(v));
             if (direction != Point()) {
-                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], distance);
+                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], kFarthest, distance);
                 ends[v] = ends[v] + std::max(way.value_or(0.0), 0.0) * direction;
             }
         },

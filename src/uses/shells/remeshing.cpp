@@ -31,6 +31,7 @@ constexpr double kLeastAgreement = 0.5;
 constexpr double kLongestMove = 0.5;
 // Cosine of the angle between the sides of a triangle on one curve from which on it is a part of the curve.
 constexpr double kFlatEar = -0.8;
+constexpr double kNoEar = -0.99;
 constexpr int kRounds = 12;         // after all vertices are in their places; shapes of triangles settle in about eight
 constexpr int kMostRounds = 60;     // for sizes far below the thickness of walls
 constexpr int kMostDivisions = 12;  // of an edge 4,000 times as long as the size
@@ -356,7 +357,7 @@ class WallRemesher {
         if (!sides[0]->is_curve() || !sides[1]->is_curve()) {
             return;
         }
-        if (cosine < kFlatEar && is_curve(others[0], others[1])) {  // between curves that are one
+        if (cosine < kNoEar && is_curve(others[0], others[1])) {  // between curves that are one
             remove(t);
             cut(others[0], others[1], v);
             remove_twins(v);
