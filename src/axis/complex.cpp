@@ -286,6 +286,26 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex) {
     return curves;
 }
 
+IndexLists faces_at_edges(const MedialComplex& complex) {
+    return grouped(complex.edges.size(), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            std::ranges::for_each(complex.face_edges[f], [&](Index e) { add(e, f); });
+        }
+    });
+}
+
+std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex) {
+    const std::vector<Index> faces_at = face_counts(complex);
+    std::vector<std::uint8_t> result(complex.vertices.size());
+    for (std::size_t e = 0; e < faces_at.size(); ++e) {
+        if (faces_at[e] == 1) {
+            result[complex.edges[e][0]] = 1;
+            result[complex.edges[e][1]] = 1;
+        }
+    }
+    return result;
+}
+
 IndexLists faces_of_sheets(const MedialComplex& complex) {
     return grouped(static_cast<std::size_t>(complex.sheets), [&](const auto& add) {
         for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {

@@ -41,6 +41,12 @@ std::vector<std::array<Index, 2>> curve_edges(const MedialComplex& complex);
 /// The vertices without an edge: the isolated balls.
 std::vector<Index> isolated_vertices(const MedialComplex& complex);
 
+/// The faces at each edge.
+IndexLists faces_at_edges(const MedialComplex& complex);
+
+/// 1 for the vertices of edges with one face, else 0.
+std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex);
+
 /// The faces of each sheet.
 IndexLists faces_of_sheets(const MedialComplex& complex);
 

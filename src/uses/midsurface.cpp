@@ -23,7 +23,6 @@
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
-#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
@@ -152,11 +151,7 @@ Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
 // Sheets are flooded first; then walls flood what lies between seams alone.
 Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
     const auto count = static_cast<Index>(complex.faces.size());
-    const IndexLists at_edge = grouped(complex.edges.size(), [&](const auto& add) {
-        for (Index f = 0; f < count; ++f) {
-            std::ranges::for_each(complex.face_edges[f], [&](Index e) { add(e, f); });
-        }
-    });
+    const IndexLists at_edge = faces_at_edges(complex);
     std::vector<double> radii(complex.faces.size());
     const auto least_radius = [&](Index f) {
         return complex

@@ -515,17 +515,8 @@ MedialComplex contracted(MedialComplex complex, const std::vector<Sliver>& slive
 // Where a seam ends and a sheet goes on around it, from one side of it to the other: the shortest edge from there to
 // the border of that sheet.
 std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex, double most) {
-    const IndexLists faces_at = grouped(complex.edges.size(), [&](const auto& add) {
-        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-            std::ranges::for_each(complex.face_edges[f], [&](Index e) { add(e, f); });
-        }
-    });
-    Flags is_at_border(complex.vertices.size());
-    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-        for (const Index v : complex.edges[e]) {
-            is_at_border[v] = is_at_border[v] != 0 || faces_at[e].size() == 1 ? 1 : 0;
-        }
-    }
+    const IndexLists faces_at = faces_at_edges(complex);
+    const Flags is_at_border = vertices_at_borders(complex);
     const auto next_edge = [&](Index face, Index edge, Index v) {
         return *std::ranges::find_if(complex.face_edges[face], [&](Index e) {
             return e != edge && (complex.edges[e][0] == v || complex.edges[e][1] == v);

@@ -332,15 +332,7 @@ class Tracing {
 }  // namespace
 
 std::vector<SharpEdge> traced_edges(const MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options) {
-    const std::vector<Index> faces_at = face_counts(complex);
-    std::vector<std::uint8_t> is_on_border(complex.vertices.size());
-    for (std::size_t e = 0; e < faces_at.size(); ++e) {
-        for (const Index v : complex.edges[e]) {
-            if (faces_at[e] == 1) {
-                is_on_border[v] = 1;
-            }
-        }
-    }
+    const std::vector<std::uint8_t> is_on_border = vertices_at_borders(complex);
     std::vector<Point> points;
     for (std::size_t v = 0; v < is_on_border.size(); ++v) {
         if (is_on_border[v] != 0) {
