@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/collapse.hpp"
+#include "axis/edit/remainder.hpp"
 #include "axis/edit/slivers.hpp"
 #include "axis/edit/triangulated.hpp"
 #include "axis/envelope_data.hpp"
@@ -43,6 +45,9 @@ constexpr std::string_view kMidsurfaceStage = "midsurface";
 // Seams where four sheets meet are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7 radii.
 // Without this sheets that cross stay joined at the ends of their seam; at 0.25 sheets of thin panels become one.
 constexpr double kSeamWidth = 0.1;
+
+// Of the radius: as far from the border a seam may end that goes on to it. The border is one radius from the rim.
+constexpr double kSeamReach = 0.5;
 // Up to this part of the radius a sheet counts for its tangent at the border.
 constexpr double kTangentReach = 0.5;
 // How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
@@ -455,13 +460,41 @@ void measure_edges(Midsurface& surface) {
     }
 }
 
+// Sheets smaller than a square as wide as a seam's reach, as contractions leave them beside seams, collapse from their
+// border.
+MedialComplex without_flaps(const MedialComplex& walls) {
+    std::vector<double> areas(static_cast<std::size_t>(walls.sheets));
+    std::vector<double> radii(static_cast<std::size_t>(walls.sheets));
+    for (Index f = 0; f < static_cast<Index>(walls.faces.size()); ++f) {
+        const Index sheet = walls.face_sheets[f];
+        areas[sheet] += face_area(walls, f);
+        radii[sheet] = std::max(radii[sheet], mean_ball(walls, walls.faces[f]).radius);
+    }
+    Remainder rest(walls);
+    const auto is_flap = [&](const ElementaryCollapse& collapse) {
+        const Index sheet = collapse.has_face ? walls.face_sheets[collapse.element] : kNone;
+        return sheet == kNone || std::sqrt(areas[sheet]) < kSeamReach * radii[sheet];
+    };
+    Collapses collapses(walls, rest, is_flap, [](const ElementaryCollapse&, bool) {});
+    collapses.add_all();
+    collapses.run();
+    return part(walls, rest.has_face);
+}
+
+// The walls of a complex, with whole seams.
+MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
+    MedialComplex walls =
+        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSeamWidth);
+    const auto reaches = each_of<double>(walls.radii, [](double radius) { return kSeamReach * radius; });
+    walls = without_slivers(with_seams_to_borders(std::move(walls), reaches), kInfinity);
+    return without_flaps(without_short_edges_at_seams(std::move(walls), kSeamWidth));
+}
+
 Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options, const DistanceInside& distance,
                          const Execution& execution) {
     report(execution, kMidsurfaceStage, 0.0);
     const Flags cores = in_wide_parts(complex, between_sides(complex, options.angle));
-    const MedialComplex walls = without_slivers(
-        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSeamWidth),
-        kInfinity);
+    const MedialComplex walls = walls_of(complex, cores);
     report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;
     surface.mesh.vertices = walls.vertices;

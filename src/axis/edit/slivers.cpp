@@ -514,7 +514,8 @@ MedialComplex contracted(MedialComplex complex, const std::vector<Sliver>& slive
 
 // Where a seam ends and a sheet goes on around it, from one side of it to the other: the shortest edge from there to
 // the border of that sheet.
-std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex, double most) {
+std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex, std::span<const double> most,
+                                                    double factor) {
     const IndexLists faces_at = faces_at_edges(complex);
     const Flags is_at_border = vertices_at_borders(complex);
     const auto next_edge = [&](Index face, Index edge, Index v) {
@@ -537,7 +538,7 @@ std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex
     for (Index seam = 0; seam < static_cast<Index>(complex.edges.size()); ++seam) {
         for (const Index v : complex.edges[seam]) {
             for (const Index first : faces_at[seam].size() > 2 ? faces_at[seam] : std::span<const Index>()) {
-                std::pair<double, std::array<Index, 2>> shortest{most, {kNone, kNone}};
+                std::pair<double, std::array<Index, 2>> shortest{factor * most[v], {kNone, kNone}};
                 Index face = first;
                 Index edge = next_edge(face, seam, v);
                 while (faces_at[edge].size() == 2) {
@@ -549,7 +550,7 @@ std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex
                     face = faces_at[edge][faces_at[edge][0] == face ? 1 : 0];
                     edge = next_edge(face, edge, v);
                 }
-                if (edge == seam && shortest.first < most && is_turn(seam, first, face)) {
+                if (edge == seam && shortest.second[0] != kNone && is_turn(seam, first, face)) {
                     found.push_back(shortest);
                 }
             }
@@ -576,8 +577,13 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
 }
 
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {
+    const std::vector<double> reaches(complex.vertices.size(), kMostGap * tolerance);
+    return with_seams_to_borders(std::move(complex), reaches);
+}
+
+MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches) {
     // Polygons are cut first: then more edges lead there.
-    const auto ends = edges_around_ends(complex, 2.0 * kMostGap * tolerance);
+    const auto ends = edges_around_ends(complex, reaches, 2.0);
     if (ends.empty()) {
         return complex;
     }
@@ -587,7 +593,7 @@ MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {
     }
     complex = with_triangles_at(is_end, complex);
     label_sheets(complex);
-    const auto edges = edges_around_ends(complex, kMostGap * tolerance);
+    const auto edges = edges_around_ends(complex, reaches, 1.0);
     Contraction contraction(std::move(complex));
     for (const auto& [p, q] : edges) {
         contraction.contract(p, q);

@@ -16,6 +16,8 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance);
 /// Seams that end less than a `tolerance` before the border of a sheet that is folded along them end on it, so that the
 /// sheets on both sides of them are two.
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance);
+/// \param reaches of the vertices: how far from the end of a seam the border may be
+MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches);
 
 /// Contracts edges with an end on a seam that are shorter than this part of the smaller radius at their ends where that
 /// keeps the homotopy type.
