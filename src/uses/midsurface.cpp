@@ -25,6 +25,7 @@
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
+#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
@@ -35,6 +36,7 @@
 #include "spatial/mesh_parts.hpp"
 #include "uses/ascent.hpp"
 #include "uses/boundary_ahead.hpp"
+#include "uses/uphill.hpp"
 #include "uses/wide_parts.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -103,6 +105,42 @@ Flags between_sides(const MedialComplex& complex, double angle) {
         result[f] = complex.face_angles[f] >= angle && is_flat ? 1 : 0;
     });
     return result;
+}
+
+// Vertices of the border from which balls of the solid grow as in an edge go to where they no longer do, unless the
+// surface becomes larger: where the axis is as coarse as the wall is thick, a face may lie across the seam, and have an
+// angle between those of both sheets.
+MedialComplex without_slopes(MedialComplex walls, double angle, const Solid& solid) {
+    const std::vector<std::uint8_t> is_on_border = vertices_at_borders(walls);
+    const IndexLists faces_at = grouped(walls.vertices.size(), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(walls.faces.size()); ++f) {
+            std::ranges::for_each(walls.faces[f], [&](Index v) { add(v, f); });
+        }
+    });
+    const auto balls = mapped<Ball>(
+        walls.vertices.size(),
+        [&](std::size_t v) {
+            const Ball ball = ball_at(walls, static_cast<Index>(v));
+            return is_on_border[v] != 0 && ball.radius > 0.0 ? uphill(solid, ball, cosine_of_degrees(angle)) : ball;
+        },
+        std::size_t{16});
+    const auto area_at = [&](Index v) {
+        double area = 0.0;
+        std::ranges::for_each(faces_at[v], [&](Index f) { area += face_area(walls, f); });
+        return area;
+    };
+    for (Index v = 0; v < static_cast<Index>(balls.size()); ++v) {
+        if (walls.radii[v] < kDescent * balls[v].radius) {
+            const double before = area_at(v);
+            const Point place = std::exchange(walls.vertices[v], balls[v].center);
+            if (area_at(v) > before) {
+                walls.vertices[v] = place;
+            } else {
+                walls.radii[v] = balls[v].radius;
+            }
+        }
+    }
+    return walls;
 }
 
 // The faces with their edges and vertices; sheets are found anew.
@@ -490,11 +528,14 @@ MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
     return without_flaps(without_short_edges_at_seams(std::move(walls), kSeamWidth));
 }
 
-Midsurface midsurface_of(const MedialComplex& complex, const MidsurfaceOptions& options, const DistanceInside& distance,
-                         const Execution& execution) {
+Midsurface midsurface_of(const MedialComplex& complex, const Solid* solid, const MidsurfaceOptions& options,
+                         const DistanceInside& distance, const Execution& execution) {
     report(execution, kMidsurfaceStage, 0.0);
     const Flags cores = in_wide_parts(complex, between_sides(complex, options.angle));
-    const MedialComplex walls = walls_of(complex, cores);
+    MedialComplex walls = walls_of(complex, cores);
+    if (solid != nullptr) {
+        walls = without_slopes(std::move(walls), options.angle, *solid);
+    }
     report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;
     surface.mesh.vertices = walls.vertices;
@@ -539,11 +580,11 @@ Midsurface midsurface(const MedialComplex& complex, const MidsurfaceOptions& opt
     return in_arena(execution, [&] {
         check_options(complex, options);
         if (complex.faces.empty() || !options.extends) {
-            return midsurface_of(complex, options, {}, execution);
+            return midsurface_of(complex, nullptr, options, {}, execution);
         }
         const EnvelopeData envelope(complex);
         return midsurface_of(
-            complex, options, [&](const Point& p) { return -envelope.signed_distance(p); }, execution);
+            complex, nullptr, options, [&](const Point& p) { return -envelope.signed_distance(p); }, execution);
     });
 }
 
@@ -554,7 +595,7 @@ Midsurface midsurface(const MedialComplex& complex, const Solid& solid, const Mi
     }
     return in_arena(execution, [&] {
         check_options(complex, options);
-        return midsurface_of(complex, options, distance_inside(solid), execution);
+        return midsurface_of(complex, &solid, options, distance_inside(solid), execution);
     });
 }
 
