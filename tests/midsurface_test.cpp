@@ -9,6 +9,7 @@
 #include <map>
 #include <numbers>
 #include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,12 +18,17 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
 
 namespace scaleaxis {
 namespace {
 
 using test::box_mesh;
+using test::moved;
+using test::Random;
+using test::random_turn;
 using test::revolved_mesh;
+using test::Similarity;
 using test::sphere_mesh;
 
 using Cell = std::array<int, 3>;
@@ -179,6 +185,24 @@ TEST(Midsurface, OfALargePlateHasNoSpikesIntoItsEdges) {
     EXPECT_GT(surface.sheets[0].min, 0.9);
     for (const Point& p : surface.mesh.vertices) {
         EXPECT_NEAR(p.z, 0.5, 0.05);
+    }
+}
+
+// The walls are 2.8 δ thick. Faces across the seam between what is a wall and what runs into an edge hung on it, thin
+// as 0.55; seams ended before the rim, and sheets went on around them.
+TEST(Midsurface, IsTheSameInAnyPosition) {
+    Random random(1);
+    for (int turn = 0; turn < 8; ++turn) {
+        SCOPED_TRACE("turn " + std::to_string(turn) + " of seed 1");
+        const Similarity position = random_turn(random);
+        const Midsurface plate = midsurface_of(moved(box_mesh({0, 0, 0}, {30, 20, 1}), position)).surface;
+        ASSERT_EQ(plate.sheets.size(), 1U);
+        EXPECT_NEAR(area(plate), 600.0, 1.0);
+        EXPECT_GT(plate.sheets[0].min, 0.75);
+        const Midsurface profile = midsurface_of(moved(t_profile(), position)).surface;
+        EXPECT_EQ(profile.sheets.size(), 3U);
+        EXPECT_EQ(profile.seams, 1);
+        EXPECT_NEAR(profile.seam_length, 6.0, 0.1);
     }
 }
 
