@@ -222,24 +222,26 @@ void for_each_better_leaf(const BoxTree& tree, const Bound& bound, const float& 
         }
         const BoxTree::Node& node = *entry.node;
         const Float4 bounds = bound(node);
-        std::array<int, BoxTree::kWidth> children{0, 1, 2, 3};
-        const auto put_in_order = [&](int i, int j) {
-            if (bounds[children[i]] > bounds[children[j]]) {
-                std::swap(children[i], children[j]);
+        // The children that are near enough, in order: mostly one or two.
+        std::array<int, BoxTree::kWidth> children{};
+        int count = 0;
+        for (int k = 0; k < BoxTree::kWidth; ++k) {
+            if (bounds[k] < best) {
+                int at = count++;
+                for (; at > 0 && bounds[children[at - 1]] > bounds[k]; --at) {
+                    children[at] = children[at - 1];
+                }
+                children[at] = k;
             }
-        };
-        put_in_order(0, 1);
-        put_in_order(2, 3);
-        put_in_order(0, 2);
-        put_in_order(1, 3);
-        put_in_order(1, 2);
-        for (const int k : children) {
+        }
+        for (int i = 0; i < count; ++i) {
+            const int k = children[i];
             if (node.count[k] > 0 && bounds[k] < best) {
                 visit(node.first[k], node.count[k]);
             }
         }
         // The nearest child comes last on the stack, and so first off it.
-        for (int i = BoxTree::kWidth - 1; i >= 0; --i) {
+        for (int i = count - 1; i >= 0; --i) {
             const int k = children[i];
             if (node.count[k] == 0 && bounds[k] < best) {
                 stack[size++] = {&node + node.first[k], bounds[k]};

@@ -36,6 +36,11 @@ constexpr double kBeyondPlace =
 // and an edge beside it that is as far as the step is not in the way.
 const double kAhead = cosine_of_degrees(25.0);
 
+// A ball beside an edge sees its faces at the angle of their normals, but for what the union is off: of a hundred balls
+// beside the edges of boxes, prisms and cylinders one to five see less than this part of it, and those next to them
+// more. With 0.8 of it some lengths are traced from fewer places, half of it saves a quarter as much time.
+constexpr double kSeenAngle = 0.7;
+
 // A place on an edge, or a corner.
 struct Node {
     Crease crease;                            // without a direction in corners
@@ -333,9 +338,15 @@ class Tracing {
 
 std::vector<SharpEdge> traced_edges(const MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options) {
     const std::vector<std::uint8_t> is_on_border = vertices_at_borders(complex);
+    std::vector<double> angles(complex.vertices.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            angles[v] = std::max(angles[v], complex.face_angles[f]);
+        }
+    }
     std::vector<Point> points;
     for (std::size_t v = 0; v < is_on_border.size(); ++v) {
-        if (is_on_border[v] != 0) {
+        if (is_on_border[v] != 0 && angles[v] >= kSeenAngle * options.angle) {
             points.push_back(complex.vertices[v]);
         }
     }

@@ -60,7 +60,8 @@ class RidgeCuts {
         const Index at_q = sectors.of_corner[corners[1]];
         const double time_p = fire.sector_times[at_p];
         const double time_q = fire.sector_times[at_q];
-        if (std::max(time_p, time_q) == kInfinity) {
+        // From one front fires do not meet.
+        if (std::max(time_p, time_q) == kInfinity || fire.sector_fronts[at_p] == fire.sector_fronts[at_q]) {
             return std::nullopt;
         }
         const double length = distance(complex.vertices[p], complex.vertices[q]);
@@ -80,9 +81,11 @@ class RidgeCuts {
             const double from_q = time_beside(fire, at_q, at);
             time = std::min(from_p, from_q);
             (from_p < from_q ? from : to) = t;
-        }
-        if (time < std::max(time_p, time_q) + rise) {
-            return std::nullopt;  // the edge runs along the border
+            // At the place where the search ends the fire is not later than here by more than the way there.
+            const double way = k + 1 < kBisections ? (to - from) * length : 0.0;
+            if (time + way < std::max(time_p, time_q) + rise) {
+                return std::nullopt;  // the edge runs along the border
+            }
         }
         const double radius = radius_on_edge(complex, radii, edge, t);
         const RidgeCrossing crossing{

@@ -170,7 +170,7 @@ Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, con
         }
     };
     extend(landmarks);
-    extend(points_on_lines(lattice, cells, kFewLines / face, 0, root));
+    extend(points_on_lines(lattice, cells_at_sides(lattice, cells, box), kFewLines / face, 0, root));
     const std::vector<SurfaceCell> outermost = cells_at_sides(lattice, cells, box);
     extend(points_on_lines(lattice, outermost, kManyLines / face, 1, root));
     extend(points_on(lattice, edges_of(outermost), root));
