@@ -294,6 +294,14 @@ IndexLists faces_at_edges(const MedialComplex& complex) {
     });
 }
 
+IndexLists faces_at_vertices(const MedialComplex& complex) {
+    return grouped(complex.vertices.size(), [&](const auto& add) {
+        for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
+            std::ranges::for_each(complex.faces[f], [&](Index v) { add(v, f); });
+        }
+    });
+}
+
 std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex) {
     const std::vector<Index> faces_at = face_counts(complex);
     std::vector<std::uint8_t> result(complex.vertices.size());

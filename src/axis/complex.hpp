@@ -44,6 +44,9 @@ std::vector<Index> isolated_vertices(const MedialComplex& complex);
 /// The faces at each edge.
 IndexLists faces_at_edges(const MedialComplex& complex);
 
+/// The faces at each vertex.
+IndexLists faces_at_vertices(const MedialComplex& complex);
+
 /// 1 for the vertices of edges with one face, else 0.
 std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex);
 

@@ -46,25 +46,6 @@ std::vector<Out> collect_blocks(const Solid& solid, std::size_t count, std::size
     return result;
 }
 
-/// Answers to questions about points, in the order of these. They are asked along a Hilbert curve, batch by batch and
-/// in parallel: questions about places near to each other are answered faster one after the other.
-template <class Answer, class Ask>
-std::vector<Answer> answers_of(const Solid& solid, std::span<const Point> points, const Ask& ask) {
-    std::vector<Answer> answers(points.size());
-    const std::vector<Index> order = hilbert_order(points);
-    collect_batches<std::vector<Index>>(
-        solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<Index>&) {
-            const std::span<const Index> asked = std::span(order).subspan(begin, end - begin);
-            const auto places = each_of<Point>(asked, [&](Index i) { return points[i]; });
-            std::vector<Answer> found(asked.size());
-            ask(asked, places, found);
-            for (std::size_t k = 0; k < asked.size(); ++k) {
-                answers[asked[k]] = found[k];
-            }
-        });
-    return answers;
-}
-
 /// Which points lie in the solid: 1, else 0. In the order given, in which they mostly are near each other: to put them
 /// into another would take as long as to answer for an image.
 inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Point> points) {
@@ -75,18 +56,29 @@ inline std::vector<std::uint8_t> sides_of(const Solid& solid, std::span<const Po
         });
 }
 
-/// The points of the boundary that are nearest to some points: see `Solid::nearest`.
+/// The points of the boundary that are nearest to some points, in the order of these: see `Solid::nearest`. They are
+/// asked for along a Hilbert curve, batch by batch and in parallel: questions about places near to each other are
+/// answered faster one after the other.
 inline std::vector<std::optional<Point>> nearest_of(const Solid& solid, std::span<const Point> points,
                                                     std::span<const double> bounds) {
-    if (!points.empty()) {
-        solid.prepare_nearest();
+    std::vector<std::optional<Point>> answers(points.size());
+    if (points.empty()) {
+        return answers;
     }
-    return answers_of<std::optional<Point>>(
-        solid, points,
-        [&](std::span<const Index> asked, std::span<const Point> places, std::span<std::optional<Point>> nearest) {
+    solid.prepare_nearest();
+    const std::vector<Index> order = hilbert_order(points);
+    collect_batches<std::vector<Index>>(
+        solid, points.size(), [&](std::size_t begin, std::size_t end, std::vector<Index>&) {
+            const std::span<const Index> asked = std::span(order).subspan(begin, end - begin);
+            const auto places = each_of<Point>(asked, [&](Index i) { return points[i]; });
             const auto within = each_of<double>(asked, [&](Index i) { return bounds[i]; });
-            solid.nearest(places, within, nearest);
+            std::vector<std::optional<Point>> found(asked.size());
+            solid.nearest(places, within, found);
+            for (std::size_t k = 0; k < asked.size(); ++k) {
+                answers[asked[k]] = found[k];
+            }
         });
+    return answers;
 }
 
 /// Asks for the crossing of `chord_of(i)` for `0 ≤ i < count`, calls `take(i, chord, crossing, out)` with each answer,

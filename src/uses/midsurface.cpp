@@ -25,7 +25,6 @@
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
-#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
@@ -112,11 +111,7 @@ Flags between_sides(const MedialComplex& complex, double angle) {
 // angle between those of both sheets.
 MedialComplex without_slopes(MedialComplex walls, double angle, const Solid& solid) {
     const std::vector<std::uint8_t> is_on_border = vertices_at_borders(walls);
-    const IndexLists faces_at = grouped(walls.vertices.size(), [&](const auto& add) {
-        for (Index f = 0; f < static_cast<Index>(walls.faces.size()); ++f) {
-            std::ranges::for_each(walls.faces[f], [&](Index v) { add(v, f); });
-        }
-    });
+    const IndexLists faces_at = faces_at_vertices(walls);
     const auto balls = mapped<Ball>(
         walls.vertices.size(),
         [&](std::size_t v) {

@@ -138,16 +138,10 @@ bool is_strip(const MedialComplex& complex, Index f) {
 // Where the contacts of the balls are, as seen from the vertices.
 class ContactDirections {
    public:
-    explicit ContactDirections(const MedialComplex& complex) : complex_(complex) {
-        faces_ = grouped(complex.vertices.size(), [&](const auto& add) {
-            for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-                for (const Index v : complex.faces[f]) {
-                    add(v, static_cast<Index>(f));
-                }
-            }
-        });
-        neighbors_ = grouped_both_ways(complex.vertices.size(), curve_edges(complex));
-    }
+    explicit ContactDirections(const MedialComplex& complex)
+        : complex_(complex),
+          faces_(faces_at_vertices(complex)),
+          neighbors_(grouped_both_ways(complex.vertices.size(), curve_edges(complex))) {}
 
     bool is_foot(Index v) const {
         return std::ranges::any_of(faces_[v], [&](Index f) { return is_strip(complex_, f); });

@@ -170,6 +170,7 @@ Box extent_of(const Lattice& lattice, const std::vector<SurfaceCell>& cells, con
         }
     };
     extend(landmarks);
+    // Other cells lie within the box already.
     extend(points_on_lines(lattice, cells_at_sides(lattice, cells, box), kFewLines / face, 0, root));
     const std::vector<SurfaceCell> outermost = cells_at_sides(lattice, cells, box);
     extend(points_on_lines(lattice, outermost, kManyLines / face, 1, root));
