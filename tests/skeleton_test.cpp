@@ -275,7 +275,7 @@ double turning(const Skeleton& skeleton, Index branch) {
 TEST(Skeleton, IsStraightAlongFlatParts) {
     const Result result = skeleton_of(*mesh_solid(box_mesh({0, 0, 0}, {12, 2.4, 0.8})));
     ASSERT_EQ(result.statistics.branches, 1);
-    EXPECT_LT(turning(result.skeleton, 0), 120.0);
+    EXPECT_LT(turning(result.skeleton, 0), 60.0);
 }
 
 TEST(Skeleton, LeavesOutDetoursInABall) {
