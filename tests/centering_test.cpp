@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/stages/stages.hpp"
 #include "complexes.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/envelope.hpp"
@@ -178,6 +179,15 @@ TEST(Centering, HalvesEdgesBesideSharpOnesWhereTheSolidTurns) {
         }
     }
     EXPECT_LT(farthest, 0.15 * tolerance);
+}
+
+TEST(Centering, HalvesNoEdgesWhereOnlyTheUnionDips) {
+    const std::unique_ptr<Solid> plate = mesh_solid(box_mesh({0, 0, 0}, {10, 10, 1}));
+    const double tolerance = 0.02 * plate->bounds().diagonal();
+    const MedialComplex before = axis_before(*plate, 0.02, 1.0);
+    ASSERT_GT(pairs_off_linear(before, 0.2 * tolerance).size(), 100U);
+    const CenteredComplex after = center(before, *plate, {.tolerance = tolerance});
+    EXPECT_LT(after.statistics.halved, static_cast<Index>(before.vertices.size() / 100));
 }
 
 /// Points all over a mesh.

@@ -1689,7 +1689,8 @@ TEST_F(CommandLine, FiltersSmoothsAndRefinesStoredAxes) {
     ASSERT_EQ(run({"smooth", "filtered.ply", "-o", "smooth.ply", "--smooth", "7", "-q"}).status, 0);
     // Large faces are divided first, and what the statistics tell is true of the files.
     const scaleaxis::MedialComplex ragged = axis_in("filtered.ply");
-    const scaleaxis::MedialComplex divided = scaleaxis::linearized(ragged, 0.002 * box_of_balls(ragged).diagonal());
+    const scaleaxis::MedialComplex divided =
+        scaleaxis::linearized_around_borders(ragged, 0.002 * box_of_balls(ragged).diagonal());
     EXPECT_GT(divided.vertices.size(), ragged.vertices.size());
     const scaleaxis::MedialComplex moved = axis_in("smooth.ply");
     EXPECT_EQ(smooth["before"]["vertices"], ragged.vertices.size());

@@ -192,7 +192,7 @@ TEST(Smooth, OfAComplexAloneIsNearThatWithItsUnion) {
     const double scale = 1.1;
     const MedialAxis axis = medial_axis(scaled(balls, scale));
     const MedialComplex shrunk = shrink(filter(axis.complex).complex, scale);
-    const MedialComplex divided = linearized(shrunk, linear_tolerance(shrunk));
+    const MedialComplex divided = linearized_around_borders(shrunk, linear_tolerance(shrunk));
     const SmoothOptions options{.rounds = 10};
     const MedialComplex expected = smooth(divided, axis.ball_union, options);
     const MedialComplex smoothed = smooth(shrunk, options);

@@ -22,7 +22,7 @@ struct CenterStatistics {
     Index moved = 0;             ///< of these, with another centre
     double largest_move = 0.0;   ///< of a centre
     double mean_growth = 0.0;    ///< of the radii of all vertices
-    Index halved = 0;            ///< edges beside sharp edges, with a new vertex in the middle
+    Index halved = 0;            ///< edges with a new vertex in the middle
     std::int64_t questions = 0;  ///< points asked for the nearest one of the boundary
 };
 

@@ -225,18 +225,16 @@ void shrink_balls(StageData& data, const Execution& execution) {
     MedialComplex complex = shrunk(std::move(data.result.complex), data.scale);
     if (data.options.is_dense) {
         complex = densified(std::move(complex), {}, execution);
-    } else if (is_smoothed(data.options, false) || is_centered(data.options, data.fitted_solid != nullptr)) {
-        // Where a vertex moves, radii become linear on the faces around it: they are to be so beforehand, or balls
-        // between the vertices would fill crevices.
-        complex =
-            in_arena(execution, [&] { return linearized(std::move(complex), kLinearPart * data.given.tolerance); });
     }
     data.result.complex = std::move(complex);
 }
 
 void smooth_sheets(StageData& data, const Execution& execution) {
+    MedialComplex complex = in_arena(execution, [&] {
+        return linearized_around_borders(std::move(data.result.complex), kLinearPart * data.given.tolerance);
+    });
     data.result.complex =
-        smooth(std::move(data.result.complex), std::exchange(data.grown, {}), {smoothing_of(data.options)}, execution);
+        smooth(std::move(complex), std::exchange(data.grown, {}), {smoothing_of(data.options)}, execution);
 }
 
 void center_balls(StageData& data, const Execution& execution) {

@@ -501,8 +501,8 @@ def center(
     progress: Progress = None,
 ) -> CenteredComplex:
     """Makes the balls of a filtered and shrunk complex touch the solid: vertices go to the middle between the tangent
-    planes at their contacts if their balls grow there, and radii become the distances from its boundary. Edges of faces
-    that end on sharp edges are halved where balls in between do not touch.
+    planes at their contacts if their balls grow there, and radii become the distances from its boundary. Edges are
+    halved where balls in between do not touch.
 
     tolerance: δ of the sampling as a length: no vertex moves farther, and no ball grows by more.
     """

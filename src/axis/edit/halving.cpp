@@ -17,6 +17,9 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
+// Of the error: what sticks out is not in the solid.
+constexpr double kMostSticking = 0.5;
+
 // Which edges and faces are looked at.
 struct Asked {
     std::vector<Index> edges;
@@ -44,6 +47,23 @@ Asked asked_of(const MedialComplex& complex, std::span<const std::uint8_t> faces
 
 }  // namespace
 
+std::vector<std::optional<double>> growths_in(const Solid& solid, std::span<const Ball> balls, double error) {
+    const auto centers = each_of<Point>(balls, [](const Ball& ball) { return ball.center; });
+    const auto bounds = each_of<double>(balls, [&](const Ball& ball) { return ball.radius + 2.0 * error; });
+    const std::vector<std::optional<Point>> nearest = nearest_of(solid, centers, bounds);
+    std::vector<std::optional<double>> growths(balls.size());
+    for (std::size_t i = 0; i < balls.size(); ++i) {
+        if (nearest[i]) {
+            growths[i] = distance(centers[i], *nearest[i]) - balls[i].radius;
+        }
+    }
+    return growths;
+}
+
+bool touches_nearly(std::optional<double> growth, double error) {
+    return growth && *growth <= error && *growth >= -kMostSticking * error;
+}
+
 std::size_t Halving::count() const { return static_cast<std::size_t>(std::ranges::count(is_halved, 1)); }
 
 Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const HalvingOptions& options) {
@@ -52,17 +72,7 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
     for (const Index f : faces) {
         balls.push_back(mean_ball(complex, complex.faces[f]));
     }
-    std::vector<Point> points;
-    std::vector<double> bounds;
-    for (const Ball& ball : balls) {
-        points.push_back(ball.center);
-        bounds.push_back(ball.radius + 2.0 * options.error);
-    }
-    const std::vector<std::optional<Point>> nearest = nearest_of(solid, points, bounds);
-    const auto room = [&](std::size_t i) { return distance(points[i], *nearest[i]); };
-    const auto touches = [&](std::size_t i) {
-        return nearest[i] && std::abs(room(i) - balls[i].radius) <= options.error;
-    };
+    const std::vector<std::optional<double>> growths = growths_in(solid, balls, options.error);
     const auto length = [&](Index e) {
         return distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
     };
@@ -73,13 +83,13 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
     Halving result{std::vector<std::uint8_t>(complex.edges.size()), std::vector<double>(complex.edges.size())};
     for (std::size_t i = 0; i < edges.size(); ++i) {
         const Index e = edges[i];
-        result.is_halved[e] = !touches(i) && may_be_halved(e) ? 1 : 0;
-        result.radii[e] = nearest[i] ? std::min(balls[i].radius, room(i)) : balls[i].radius;
+        result.is_halved[e] = !touches_nearly(growths[i], options.error) && may_be_halved(e) ? 1 : 0;
+        result.radii[e] = balls[i].radius + std::min(0.0, growths[i].value_or(0.0));
     }
     for (std::size_t k = 0; k < faces.size(); ++k) {
         const std::span<const Index> sides = complex.face_edges[faces[k]];
         const Index longest = *std::ranges::max_element(sides, {}, length);
-        if (!touches(edges.size() + k) && may_be_halved(longest) &&
+        if (!touches_nearly(growths[edges.size() + k], options.error) && may_be_halved(longest) &&
             std::ranges::none_of(sides, [&](Index e) { return result.is_halved[e] != 0; })) {
             result.is_halved[longest] = 1;
         }

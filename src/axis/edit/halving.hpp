@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,15 @@
 
 namespace scaleaxis::inline v1 {
 
+/// By how much the largest balls in a solid are larger than these with the same centres; nothing where by more than
+/// twice the error.
+std::vector<std::optional<double>> growths_in(const Solid& solid, std::span<const Ball> balls, double error);
+
+/// Will such a ball do between two that touch the solid? It may lack the error, but stick out by half of it only.
+bool touches_nearly(std::optional<double> growth, double error);
+
 struct HalvingOptions {
-    double error = 0.0;                           ///< how far from touching the solid balls may be
+    double error = 0.0;                           ///< that balls may have between vertices, see `touches_nearly`
     std::span<const std::uint8_t> asked_faces{};  ///< 1: look at these and their edges; empty: at all
 };
 

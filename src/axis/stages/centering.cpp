@@ -66,6 +66,9 @@ constexpr double kMostShrinking = 0.1;
 constexpr double kFaceError = 0.1;
 constexpr int kMostCenteringRounds = 4;
 
+// Of the tolerance: how far radii that are linear between vertices may be above those of the union.
+constexpr double kLinearPart = 0.2;
+
 // Of the distance from the boundary: what is nearer than this is on the same side. Less than all of it, since solids
 // that find the nearest point by a local search may miss a nearer one.
 constexpr double kSureReach = 0.5;
@@ -515,11 +518,67 @@ Touching touching_balls(const MedialComplex& complex, std::span<const Index> ver
     return result;
 }
 
+std::vector<Index> vertices_from(std::size_t first, const MedialComplex& complex) {
+    std::vector<Index> vertices(complex.vertices.size() - first);
+    std::iota(vertices.begin(), vertices.end(), static_cast<Index>(first));
+    return vertices;
+}
+
 void take(const Ball& ball, MedialComplex& complex, Index v) {
     complex.vertices[v] = ball.center;
     complex.radii[v] = ball.radius;
     complex.vertex_origins[v] = linear_vertex(ball.radius);
 }
+
+// Around vertices that move radii become linear, while those of the union dip between its balls: where the solid has a
+// crevice, linear ones would fill it. Between which vertices is none needed? Between those that both stay, and between
+// those that both come to touch the solid if the ball halfway does, too.
+class DipsOfUnion {
+   public:
+    DipsOfUnion(const MedialComplex& complex, const Touching& touching, const Solid& solid, double tolerance)
+        : touching_(touching), numbers_(complex.vertices.size(), kNone) {
+        for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
+            numbers_[touching.vertices[i]] = static_cast<Index>(i);
+        }
+        std::vector<std::array<Index, 2>> pairs = pairs_off_linear(complex, kLinearPart * tolerance);
+        std::erase_if(pairs, [&](const auto& pair) { return !touches(pair[0]) || !touches(pair[1]); });
+        keep_touching(std::move(pairs), solid, kFaceError * tolerance);
+    }
+
+    bool needs_none(Index a, Index b) const {
+        return std::ranges::binary_search(touching_pairs_, std::array{std::min(a, b), std::max(a, b)}) ||
+               (!touches(a) && !touches(b));
+    }
+
+    std::int64_t questions() const { return questions_; }
+
+   private:
+    // New vertices stand for the union.
+    bool touches(Index v) const { return v < std::ssize(numbers_) && numbers_[v] != kNone; }
+
+    Ball ball_between(const std::array<Index, 2>& pair) const {
+        const Ball& a = touching_.balls[numbers_[pair[0]]];
+        const Ball& b = touching_.balls[numbers_[pair[1]]];
+        return {midpoint(a.center, b.center), 0.5 * (a.radius + b.radius)};
+    }
+
+    void keep_touching(std::vector<std::array<Index, 2>> pairs, const Solid& solid, double error) {
+        const auto balls = each_of<Ball>(pairs, [&](const auto& pair) { return ball_between(pair); });
+        const std::vector<std::optional<double>> growths = growths_in(solid, balls, error);
+        questions_ = std::ssize(pairs);
+        for (std::size_t i = 0; i < pairs.size(); ++i) {
+            if (touches_nearly(growths[i], error)) {
+                touching_pairs_.push_back(pairs[i]);
+            }
+        }
+        std::ranges::sort(touching_pairs_);
+    }
+
+    const Touching& touching_;
+    std::vector<Index> numbers_;  // of the balls of vertices in `touching_`
+    std::vector<std::array<Index, 2>> touching_pairs_;
+    std::int64_t questions_ = 0;
+};
 
 // Halves edges where faces are large for how much the solid turns: beside its sharp edges, and around those that are
 // re-entrant.
@@ -618,9 +677,8 @@ class FaceHalving {
 
     // Their neighbours have been centered before.
     void center_new(std::size_t first) {
-        std::vector<Index> vertices(complex_.vertices.size() - first);
-        std::iota(vertices.begin(), vertices.end(), static_cast<Index>(first));
-        const Touching touching = touching_balls(complex_, vertices, solid_, tolerance_, Feet::kComeToSeams, {});
+        const Touching touching =
+            touching_balls(complex_, vertices_from(first, complex_), solid_, tolerance_, Feet::kComeToSeams, {});
         statistics_.questions += touching.questions;
         note(touching.vertices);
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
@@ -677,9 +735,20 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
                          const Execution& execution) {
     return in_arena(execution, [&] {
         report(execution, kCenteringStage, 0.0);
-        const Touching touching = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
+        const double tolerance = options.tolerance;
+        const std::size_t given = complex.vertices.size();
+        Touching of_given = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
+        const DipsOfUnion dips(complex, of_given, solid, tolerance);
+        of_given.questions += dips.questions();
+        complex = linearized(std::move(complex), kLinearPart * tolerance,
+                             [&](Index a, Index b) { return dips.needs_none(a, b); });
+        Touching of_new =
+            touching_balls(complex, vertices_from(given, complex), solid, tolerance, Feet::kComeToSeams, {});
+        std::vector parts{std::move(of_given), std::move(of_new)};
+        const Touching touching = join(parts);
         CenteredComplex result = with_touching_balls(std::move(complex), touching);
-        FaceHalving(result, touching, solid, options.tolerance).run();
+        result.statistics.halved = static_cast<Index>(result.complex.vertices.size() - given);
+        FaceHalving(result, touching, solid, tolerance).run();
         report(execution, kCenteringStage, 1.0);
         return result;
     });

@@ -47,6 +47,7 @@ constexpr std::string_view kDensifyingStage = "densifying";
 struct Node {
     Ball ball;
     VertexOrigin origin;
+    Index vertex = kNone;  // if it is one of the complex that is sampled
 };
 
 // Do the balls at both ends of an edge, which are grown ones here, meet too flatly once they are shrunk, or not at all?
@@ -80,17 +81,20 @@ Node middle_of(const Node& p, const Node& q) {
     return {{center, radius_between(p.ball.radius, q.ball.radius, squared_length, 0.5)}, origin};
 }
 
-// Is the radius in the middle of an edge, of grown balls, far from the mean of those at its ends?
+// Is the radius in the middle of an edge, of grown balls, far from the mean of those at its ends? Unless the edge is
+// one between vertices of which it is known that the mean will do.
 struct LinearCriterion {
     double tolerance;
+    const LinearPairs& known;
 
     bool is_too_long(const Node& p, const Node& q) const {
-        return 0.5 * (p.ball.radius + q.ball.radius) - middle_of(p, q).ball.radius > tolerance;
+        return 0.5 * (p.ball.radius + q.ball.radius) - middle_of(p, q).ball.radius > tolerance &&
+               !known(p.vertex, q.vertex);
     }
 };
 
 Node node_at(const MedialComplex& complex, Index v) {
-    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_origins[v]};
+    return {{complex.vertices[v], complex.radii[v]}, complex.vertex_origins[v], v};
 }
 
 // Is a side of a polygon too long, or a diagonal from its first corner?
@@ -328,12 +332,34 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
     });
 }
 
-MedialComplex linearized(MedialComplex complex, double tolerance, const Execution& execution) {
+std::vector<std::array<Index, 2>> pairs_off_linear(const MedialComplex& complex, double tolerance) {
+    const MedialComplex grown_complex = grown(vertices_of(complex));
+    const LinearPairs none_known = no_pairs;
+    const LinearCriterion criterion{complex.scale * tolerance, none_known};
+    std::vector<std::array<Index, 2>> pairs;
+    const auto note = [&](Index a, Index b) {
+        if (criterion.is_too_long(node_at(grown_complex, a), node_at(grown_complex, b))) {
+            pairs.push_back({std::min(a, b), std::max(a, b)});
+        }
+    };
+    for (const auto& [a, b] : complex.edges) {
+        note(a, b);
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const std::span<const Index> polygon = complex.faces[f];
+        for (std::size_t k = 2; k + 1 < polygon.size(); ++k) {
+            note(polygon[0], polygon[k]);
+        }
+    }
+    return pairs;
+}
+
+MedialComplex linearized(MedialComplex complex, double tolerance, const LinearPairs& known) {
     const double scale = complex.scale;
-    const LinearCriterion criterion{scale * tolerance};
+    const LinearCriterion criterion{scale * tolerance, known};
     complex = grown(std::move(complex));
     const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
-    return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, execution), scale);
+    return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, {}), scale);
 }
 
 MedialComplex with_linear_radii(MedialComplex complex) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -94,6 +95,15 @@ BallUnion grown_union(const MedialComplex& complex, const Execution& execution) 
     return BallUnion(std::move(balls));
 }
 
+MedialComplex linearized_around_borders(MedialComplex complex, double tolerance) {
+    std::vector<std::uint8_t> moves(complex.vertices.size());
+    for (const Movable& movable : movable_vertices(complex)) {
+        moves[movable.vertex] = 1;
+    }
+    const auto may_move = [&](Index v) { return std::cmp_greater_equal(v, moves.size()) || moves[v] != 0; };
+    return linearized(std::move(complex), tolerance, [&](Index a, Index b) { return !may_move(a) && !may_move(b); });
+}
+
 MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const SmoothOptions& options,
                      const Execution& execution) {
     validate(options);
@@ -148,11 +158,11 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
     if (options.rounds == 0 || complex.vertices.empty()) {
         return complex;
     }
-    const Execution quiet{execution.threads, {}, execution.cancel};
-    const BallUnion ball_union = grown_union(complex, quiet);
+    const BallUnion ball_union = grown_union(complex, {execution.threads, {}, execution.cancel});
     const double length = kSmoothingLinearPart * box_of_balls(complex).diagonal();
-    complex = linearized(std::move(complex), length, quiet);
-    return smooth(std::move(complex), ball_union, options, execution);
+    return in_arena(execution, [&] {
+        return smooth(linearized_around_borders(std::move(complex), length), ball_union, options, execution);
+    });
 }
 
 }  // namespace scaleaxis::inline v1

@@ -3,7 +3,10 @@
 /// The stages of `scale_axis`, each of a complex that has been checked or was computed here.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <functional>
+#include <vector>
 
 #include "axis/complex.hpp"
 #include "scaleaxis/centering.hpp"
@@ -55,9 +58,20 @@ SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& s
 /// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
 BallUnion grown_union(const MedialComplex& complex, const Execution& execution);
 
+/// Is it known of a pair of vertices that a linear radius between them will do?
+using LinearPairs = std::function<bool(Index, Index)>;
+inline bool no_pairs(Index, Index) { return false; }
+
 /// The same complex with more vertices, so that interpolating the radii linearly between them is right to within a
-/// tolerance, > 0. The vertices given come first.
-MedialComplex linearized(MedialComplex complex, double tolerance, const Execution& execution = {});
+/// tolerance, > 0, or known to do. The vertices given come first. Faces that are right stay polygons.
+MedialComplex linearized(MedialComplex complex, double tolerance, const LinearPairs& known = no_pairs);
+
+/// The edges, and the diagonals of faces from their first corners, which `linearized` would cut if nothing were known;
+/// the first vertex is the lesser one.
+std::vector<std::array<Index, 2>> pairs_off_linear(const MedialComplex& complex, double tolerance);
+
+/// `linearized` where `smooth` moves vertices: radii become linear around them, and would be too large on the faces.
+MedialComplex linearized_around_borders(MedialComplex complex, double tolerance);
 
 /// What a filter has kept of a complex, with its sheets found anew: where a seam has gone, two are one now.
 FilteredComplex with_statistics(MedialComplex kept, const MedialComplex& complex);
