@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 // Thickness is asked at vertices no farther apart than this part of the diagonal.
 constexpr double kEdge = 0.01;
 
-// What parts of a mesh that overlap may have in common, of the volume of the solid: as exact are the sizes of surfaces
+// What of its area and volume a mesh may have twice, where parts touch or overlap: as exact are the sizes of surfaces
 // that are sampled. Beyond that, triangles inside the solid count for its surface.
 constexpr double kOverlap = 0.02;
 
@@ -76,9 +76,11 @@ Surface surface_of(LoadedSolid& input, const Samples& samples, const Execution& 
     if (input.solid->knows_nearest()) {
         surface.bulging = with_bulging_edges(surface.mesh, *input.solid, execution);
     }
-    const auto volume = [&] { return repair(surface.bulging.value_or(surface.mesh)).report.volume; };
-    if (has_triangles && report->volume <= (1.0 + kOverlap) * volume()) {
-        return {std::move(input.mesh), std::nullopt};
+    if (has_triangles) {
+        const MeshReport boundary = repair(surface.bulging.value_or(surface.mesh)).report;
+        if (report->volume <= (1.0 + kOverlap) * boundary.volume && report->area <= (1.0 + kOverlap) * boundary.area) {
+            return {std::move(input.mesh), std::nullopt};
+        }
     }
     return surface;
 }
@@ -121,7 +123,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
     auto [surface, bulging] = surface_of(input, *axis.kept_samples, execution(0.9, 0.9));
     surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
     std::vector<Measures> all;
-    if (bulging) {
+    if (input.solid->knows_nearest()) {
         const std::vector<double> thickness =
             thickness_of(complex, surface, *input.solid, options, execution(0.9, 0.95));
         if (const auto* image = std::get_if<ImageReport>(&input.input); image != nullptr && !source.options.load.iso) {
@@ -129,7 +131,8 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
                 warn(*warning);
             }
         }
-        all = measures(complex, curves, surface, thickness, *bulging, options.measures, execution(0.95, 1.0));
+        all = measures(complex, curves, surface, thickness, bulging.value_or(surface), options.measures,
+                       execution(0.95, 1.0));
     } else {
         all = measures(complex, curves, surface, options.measures, execution(0.9, 1.0));
     }

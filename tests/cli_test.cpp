@@ -717,6 +717,25 @@ TEST_F(CommandLine, SurfaceLeftOutCountsByItsArea) {
     }
 }
 
+TEST_F(CommandLine, WallsThatPartsShareAreNoSurface) {
+    scaleaxis::TriangleMesh tower;
+    for (int floor = 0; floor < 4; ++floor) {
+        const auto first = static_cast<scaleaxis::Index>(tower.vertices.size());
+        const scaleaxis::TriangleMesh box = scaleaxis::test::box_mesh({0, 0, 1.0 * floor}, {1, 1, floor + 1.0});
+        tower.vertices.insert(tower.vertices.end(), box.vertices.begin(), box.vertices.end());
+        for (const auto& [a, b, c] : box.triangles) {
+            tower.triangles.push_back({a + first, b + first, c + first});
+        }
+    }
+    scaleaxis::write_mesh(folder_ / "tower.off", tower);
+    const Outcome outcome = run({"table", "tower.off", "-o", "tower.json", "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const Json row = Json::parse(content(folder_ / "tower.json"))["rows"][0];
+    EXPECT_NEAR(row["area"].get<double>(), 18.0, 0.02 * 18.0);
+    EXPECT_NEAR(row["volume"].get<double>(), 4.0, 0.02 * 4.0);
+    EXPECT_NEAR(row["mean_thickness"].get<double>(), 1.0, 0.01);
+}
+
 TEST_F(CommandLine, WarnsOfThicknessThatVoxelsDoNotResolve) {
     std::string text = "X: 24\nY: 24\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 24 * 24 * 16; ++voxel) {

@@ -143,6 +143,36 @@ TEST(NearestTriangle, TreeFindsWhatBruteForceFinds) {
     }
 }
 
+TEST(NearestTriangle, TrianglesThatDoNotCountAreNeverLookedAt) {
+    Random random = announced(71);
+    for (const int part : {1, 2, 40}) {
+        const Bvh bvh = build_bvh(random_triangles(random, 2000));
+        // Every other one, and those of whole branches of the tree.
+        std::vector<std::uint8_t> counts(2000);
+        for (int t = 0; t < 2000; ++t) {
+            counts[t] = t / part % 2 == 0 || t > 1500 ? 0 : 1;
+        }
+        const TriangleBounds bounds = triangle_bounds(bvh, counts);
+        for (int i = 0; i < 1000; ++i) {
+            const Point p = random_point(random, i % 5 == 0 ? 1e20 : 1.5);
+            NearTriangle truth;
+            for (Index t = 0; t < 2000; ++t) {
+                const auto& [u, v, w] = bvh.mesh.triangles[t];
+                const Point q = nearest_point(bvh.mesh.vertices[u], bvh.mesh.vertices[v], bvh.mesh.vertices[w], p);
+                if (counts[t] != 0 && squared_distance(p, q) < truth.squared_distance) {
+                    truth = {t, q, squared_distance(p, q)};
+                }
+            }
+            expect_same(nearest_triangle(bvh, bounds, p, kInfinity,
+                                         [&](Index t, const Point&) {
+                                             EXPECT_NE(counts[t], 0);
+                                             return true;
+                                         }),
+                        truth);
+        }
+    }
+}
+
 TEST(Trees, AnswerFromPlacesWhoseSquaresExceedSinglePrecision) {
     Random random = announced(67);
     const Bvh bvh = build_bvh(random_triangles(random, 200));

@@ -88,7 +88,9 @@ Point nearest_point(const Point& a, const Point& b, const Point& c, const Point&
 
 namespace {
 
-std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh) {
+using Counts = std::span<const std::uint8_t>;  // as of `triangle_bounds`
+
+std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh, Counts counts) {
     constexpr int kSize = TriangleBlock::kSize;
     const std::size_t count = bvh.mesh.triangles.size();
     std::vector<TriangleBlock> blocks((count + kSize - 1) / kSize);
@@ -107,6 +109,9 @@ std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh) {
                     out.normals[s][2][k] = static_cast<float>(normal.z);
                     out.offsets[s][k] = static_cast<float>(offset);
                 }
+                if (!counts.empty() && counts[block * kSize + k] == 0) {
+                    blocks[block].offsets[0][k] = std::numeric_limits<float>::infinity();
+                }
             }
         },
         std::size_t{256});
@@ -124,14 +129,16 @@ struct Span {
     }
 };
 
-/// Those below each child of each node.
-std::vector<std::array<Span, Bvh::kWidth>> spans_of(const Bvh& bvh) {
+/// Those that count below each child of each node, from the first to the last.
+std::vector<std::array<Span, Bvh::kWidth>> spans_of(const Bvh& bvh, Counts counts) {
     std::vector<std::array<Span, Bvh::kWidth>> spans(bvh.nodes.size());
     for (std::size_t n = spans.size(); n-- > 0;) {  // children come after their parents
         const Bvh::Node& node = bvh.nodes[n];
         for (int k = 0; k < Bvh::kWidth; ++k) {
             if (node.count[k] > 0) {
-                spans[n][k] = {node.first[k], node.first[k] + node.count[k]};
+                for (Index t = node.first[k]; t < node.first[k] + node.count[k]; ++t) {
+                    spans[n][k].extend(counts.empty() || counts[t] != 0 ? Span{t, t + 1} : Span{});
+                }
             } else if (node.first[k] > 0 && !(node.bounds[0][0][k] > node.bounds[1][0][k])) {
                 for (const Span& part : spans[n + node.first[k]]) {
                     spans[n][k].extend(part);
@@ -196,8 +203,8 @@ OrientedBox smaller_box(const Bvh& bvh, const Bvh::Node& node, int child, const 
     return turned.half_area() < upright.half_area() ? turned : upright;
 }
 
-std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
-    const auto spans = spans_of(bvh);
+std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh, Counts counts) {
+    const auto spans = spans_of(bvh, counts);
     std::vector<OrientedBoxes> boxes(spans.size());
     for_each_index(
         spans.size(),
@@ -224,7 +231,9 @@ std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh) {
 
 }  // namespace
 
-TriangleBounds triangle_bounds(const Bvh& bvh) { return {oriented_boxes(bvh), triangle_blocks(bvh)}; }
+TriangleBounds triangle_bounds(const Bvh& bvh, Counts counts) {
+    return {oriented_boxes(bvh, counts), triangle_blocks(bvh, counts)};
+}
 
 NearestOnMesh nearest(const TriangleMesh& mesh, std::span<const Point> points, const Execution& execution) {
     if (mesh.triangles.empty()) {

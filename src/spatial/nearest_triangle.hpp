@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "base/compiler.hpp"
@@ -67,7 +69,8 @@ struct TriangleBounds {
     std::vector<TriangleBlock> blocks;  ///< triangle `t` is in block `t / 4`
 };
 
-TriangleBounds triangle_bounds(const Bvh& bvh);
+/// \param counts #F of the tree: triangles with 0 are infinitely far; empty: none is
+TriangleBounds triangle_bounds(const Bvh& bvh, std::span<const std::uint8_t> counts = {});
 
 struct NearTriangle {
     Index triangle = kNone;  ///< of the tree

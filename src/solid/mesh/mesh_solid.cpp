@@ -226,7 +226,7 @@ class MeshSolid final : public PointwiseSolid {
         }
         const double least = border.triangle != kNone ? std::sqrt(border.squared_distance) : bound;
         const NearTriangle found = nearest_triangle(bvh_, search.bounds, p, least, [&](Index t, const Point& q) {
-            return search.shares[t] == Share::kAll || (search.shares[t] == Share::kSome && bounds_near(t, q));
+            return search.shares[t] == Share::kAll || bounds_near(t, q);
         });
         if (found.triangle != kNone) {
             return found.point;
@@ -336,10 +336,15 @@ class MeshSolid final : public PointwiseSolid {
     const NearestSearch& search() const {
         return search_.get([&] {
             NearestSearch search;
-            search.bounds = triangle_bounds(bvh_);
-            if (!boundary_.is_whole_surface) {
+            if (boundary_.is_whole_surface) {
+                search.bounds = triangle_bounds(bvh_);
+            } else {
                 BoundaryPart part = boundary_part(bvh_, box_, boundary_.is_cut, boundary_.gap, boundary_.patches);
                 search.shares = std::move(part.shares);
+                // Where parts touch, hundreds of triangles may lie nearer than the boundary does.
+                search.bounds = triangle_bounds(bvh_, mapped<std::uint8_t>(search.shares.size(), [&](std::size_t t) {
+                                                    return search.shares[t] != Share::kNothing ? 1 : 0;
+                                                }));
                 if (!part.borders.triangles.empty()) {
                     search.borders = build_bvh(std::move(part.borders));
                     search.border_bounds = triangle_bounds(search.borders);
