@@ -1536,3 +1536,31 @@ TEST_F(ImageIo, SaysHowToConvertDicom) {
 
 }  // namespace
 }  // namespace scaleaxis
+    // tifffile: ImageJ's words; inches are what it writes where nothing is said.
+    expect(R"({"shape": [4, 3, 2]})", {1, 1, 1}, "");
+    expect(R"({"shape": [1, 4, 1, 3, 2], "axes": "TZCYX"})", {0.2, 0.5, 1}, "", 3);
+    expect(R"({"shape": [3, 2]})", {0.2, 0.5, 1}, "", 3);  // each page by itself
+    expect(R"({"shape": [4, 3, 2], "axes": "ZYX", "spacing": 0.3, "unit": "micron"})", {0.02, 0.05, 0.3}, "um", 2);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3, "unit": "um"})", {200, 500, 0.3}, "um", 3);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3})", {0.2, 0.5, 0.3}, "", 3);
+    expect(R"({"shape": 4, "spacing": "x"})", {0.2, 0.5, 1}, "", 3);
+    expect("{no JSON", {0.2, 0.5, 1}, "", 3);
+    expect_in("9 slices, but has 4 pages", error(R"({"shape": [9, 3, 2]})"));
+    expect_in("several volumes", error(R"({"shape": [2, 2, 3, 2]})"));
+    expect_in("several volumes", error(R"({"shape": [2, 3, 2]})"));
+    expect_in("several channels", error(R"({"shape": [4, 1, 3, 2], "axes": "CZYX"})"));
+    expect_in("several times", error(R"({"shape": [1, 4, 3, 2], "axes": "CTYX"})"));
+// ImageJ writes stacks beyond 4 GB so, and tifffile if it is told to.
+TEST_F(ImageIo, TiffWhoseOnlyPageHasAllSlices) {
+    for (const std::string description :
+         {R"({"shape": [4, 3, 2], "truncated": true})", "ImageJ=1.53t\nimages=4\nslices=4\n"}) {
+        std::string one = tiff(bytes().substr(0, 6), 2, description, 1);
+        const std::string place = little(std::uint16_t{273}) + little(std::uint16_t{4}) + little(1);
+        const std::size_t at = one.find(place);
+        ASSERT_NE(at, std::string::npos);
+        one.replace(at + place.size(), 4, little(static_cast<std::uint32_t>(one.size())));
+        expect_bytes(read_image(write("one.tif", one + bytes())));
+        expect_in("4 slices, but has 1 pages", error_of("short.tif", one + bytes().substr(1)));
+    }
+}
+

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 //
-// TIFF with several pages, by libtiff, and how far voxels are apart as ImageJ and the Open Microscopy Environment
-// (OME-XML) write it.
+// TIFF with several pages, by libtiff, and how far voxels are apart as ImageJ, the Open Microscopy Environment
+// (OME-XML) and tifffile (JSON) write it.
 #include <tiffio.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/formats/json.hpp"
 #include "base/formats/xml.hpp"
 #include "io/formats.hpp"
 #include "io/images/stored_image.hpp"
@@ -145,6 +146,9 @@ std::vector<tdir_t> pages_of(TIFF* tiff, const TiffBytes& bytes, TiffPage& first
             if (page != first) {
                 throw damaged(name() + " has values of another kind than those before it");
             }
+            if (tiff_field(tiff, TIFFTAG_IMAGEDEPTH, std::uint32_t{1}) > 1) {
+                throw unsupported(name() + " holds several slices: save each as a page of its own");
+            }
             if (const auto packing = tiff_field(tiff, TIFFTAG_COMPRESSION, std::uint16_t{COMPRESSION_NONE});
                 TIFFIsCODECConfigured(packing) == 0) {
                 throw unsupported(name() + " is packed in a way that cannot be read (" + std::to_string(packing) +
@@ -212,10 +216,11 @@ void set_upright(TIFF* tiff, const TiffPage& page, float* values) {
     }
 }
 
-/// How far voxels are apart.
+/// How far voxels are apart, and of how many slices.
 struct Calibration {
     std::array<double, 3> spacing{1, 1, 1};
     std::string unit;
+    std::int64_t slices = 0;  ///< 0: a page is one
 };
 
 /// As other formats name it; "µm" is UTF-8, with either letter, Latin-1, or as Java escapes it.
@@ -226,6 +231,14 @@ std::string unit_named(std::string_view name) {
     return std::ranges::find(kMicrometres, name) != kMicrometres.end() ? "um"
            : std::ranges::find(kNoUnits, name) != kNoUnits.end()       ? ""
                                                                        : std::string(name);
+}
+
+/// How many micrometres a unit has; none: it is not known.
+std::optional<double> micrometres_of(std::string_view unit) {
+    constexpr auto kUnits = std::to_array<std::pair<std::string_view, double>>(
+        {{"nm", 1e-3}, {"um", 1.0}, {"mm", 1e3}, {"cm", 1e4}, {"m", 1e6}});
+    const auto known = std::ranges::find(kUnits, unit, [](const auto& pair) { return pair.first; });
+    return known == kUnits.end() ? std::nullopt : std::optional(known->second);
 }
 
 /// A number of voxels a unit of length, as that length.
@@ -273,15 +286,13 @@ Calibration calibration_of_imagej(TIFF* tiff, std::string_view text, std::size_t
     if (count("channels") > 1 || count("frames") > 1) {
         fail_at_series(count("channels") > 1 ? "channels" : "frames");
     }
-    if (count("images") > static_cast<std::int64_t>(pages)) {
-        fail_at_pages(count("images"), pages);
-    }
     const auto tag = tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE});
     const std::string_view unit = tag == RESUNIT_INCH ? "inch" : tag == RESUNIT_CENTIMETER ? "cm" : "";
     const double depth = parse_number(value_of_line(text, "spacing").value_or("1")).value_or(1.0);
     return {{length_of(tiff_field(tiff, TIFFTAG_XRESOLUTION, 0.0F)),
              length_of(tiff_field(tiff, TIFFTAG_YRESOLUTION, 0.0F)), std::abs(depth)},
-            unit_named(value_of_line(text, "unit").value_or(unit))};
+            unit_named(value_of_line(text, "unit").value_or(unit)),
+            std::max(count("images"), static_cast<std::int64_t>(pages))};
 }
 
 /// The first element of that name, whatever the prefix of its namespace is.
@@ -291,8 +302,6 @@ pugi::xml_node element_named(const pugi::xml_node& root, std::string_view name) 
 
 /// Of OME-XML. Lengths in several units become micrometres.
 std::optional<Calibration> calibration_of_ome(std::string_view text, std::size_t pages) {
-    constexpr auto kUnits = std::to_array<std::pair<std::string_view, double>>(
-        {{"nm", 1e-3}, {"um", 1.0}, {"mm", 1e3}, {"cm", 1e4}, {"m", 1e6}});
     pugi::xml_document document;
     document.load_buffer(text.data(), text.size(), pugi::parse_minimal);
     const pugi::xml_node image = element_named(document, "Pixels");
@@ -321,13 +330,61 @@ std::optional<Calibration> calibration_of_ome(std::string_view text, std::size_t
         return result;
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
-        const auto unit = std::ranges::find(kUnits, units[axis], [](const auto& pair) { return pair.first; });
-        if (unit == kUnits.end()) {
+        const std::optional<double> unit = micrometres_of(units[axis]);
+        if (!unit) {
             return result;  // lengths that cannot be compared have no unit
         }
-        result.spacing[axis] *= unit->second;
+        result.spacing[axis] *= *unit;
     }
     result.unit = "um";
+    return result;
+}
+
+/// Of tifffile's JSON: the shape of an array, whose last two axes are those of a page, names of its axes, and what the
+/// caller has added, which are mostly ImageJ's `spacing` and `unit`.
+std::optional<Calibration> calibration_of_array(TIFF* tiff, std::string_view text, std::size_t pages) {
+    const Json json = Json::parse(text);
+    const Json* const shape = json.find("shape");
+    if (shape == nullptr || !shape->is_array() || shape->size() < 2 ||
+        !std::ranges::all_of(shape->elements(), &Json::is_number)) {
+        return std::nullopt;
+    }
+    const auto text_of = [&](std::string_view name) {
+        const Json* const member = json.find(name);
+        return member != nullptr && member->is_string() ? member->get<std::string>() : std::string();
+    };
+    Calibration result = calibration_of_pages(tiff);
+    result.slices = 1;
+    for (std::size_t axis = 0; axis + 2 < shape->size(); ++axis) {
+        const auto size = shape->elements()[axis].get<std::int64_t>();
+        if (size <= 1) {
+            continue;
+        }
+        const std::string axes = text_of("axes");
+        const char name = axis < axes.size() ? axes[axis] : 'Z';
+        if (name == 'C' || name == 'S' || name == 'T' || result.slices > 1) {
+            fail_at_series(name == 'T' ? "times" : result.slices > 1 ? "volumes" : "channels");
+        }
+        result.slices = size;
+    }
+    if (result.slices == 1) {
+        result.slices = static_cast<std::int64_t>(pages);  // each page has been written as an image
+    } else if (result.slices < static_cast<std::int64_t>(pages)) {
+        fail_at_series("volumes");
+    }
+    if (const Json* const spacing = json.find("spacing"); spacing != nullptr && spacing->is_number()) {
+        const auto depth = std::abs(spacing->get<double>());
+        result.spacing[2] = is_spacing(depth) ? depth : 1.0;
+    }
+    result.unit = unit_named(text_of("unit"));
+    if (!result.unit.empty()) {
+        // In that unit as in ImageJ; inches are what tifffile writes where nothing is said.
+        const bool is_metric =
+            tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE}) == RESUNIT_CENTIMETER;
+        const double length = is_metric ? 1e4 / micrometres_of(result.unit).value_or(1e4) : 1.0;
+        result.spacing[0] = length * length_of(tiff_field(tiff, TIFFTAG_XRESOLUTION, 0.0F));
+        result.spacing[1] = length * length_of(tiff_field(tiff, TIFFTAG_YRESOLUTION, 0.0F));
+    }
     return result;
 }
 
@@ -337,9 +394,22 @@ Calibration calibration_of(TIFF* tiff, std::size_t pages) {
     if (text.starts_with("ImageJ=")) {
         return calibration_of_imagej(tiff, text, pages);
     }
-    const bool is_xml = text.starts_with('<');
-    const std::optional<Calibration> ome = is_xml ? calibration_of_ome(text, pages) : std::nullopt;
-    return ome ? *ome : calibration_of_pages(tiff);
+    const std::optional<Calibration> found = text.starts_with('<')   ? calibration_of_ome(text, pages)
+                                             : text.starts_with('{') ? calibration_of_array(tiff, text, pages)
+                                                                     : std::nullopt;
+    return found ? *found : calibration_of_pages(tiff);
+}
+
+/// The values of slices that have one page together, as ImageJ writes large stacks and tifffile truncated ones: one
+/// after the other behind the place that the page names. Nothing if they are not there.
+std::optional<StoredData> slices_of_page(TIFF* tiff, std::string_view content, std::uint64_t bytes) {
+    const std::uint64_t begin = TIFFGetStrileOffset(tiff, 0);
+    const bool is_plain = TIFFIsTiled(tiff) == 0 &&
+                          tiff_field(tiff, TIFFTAG_COMPRESSION, std::uint16_t{COMPRESSION_NONE}) == COMPRESSION_NONE;
+    if (!is_plain || begin > content.size() || content.size() - begin < bytes) {
+        return std::nullopt;
+    }
+    return StoredData{content.substr(begin)};
 }
 
 }  // namespace
@@ -358,15 +428,28 @@ Image read_tiff_image(std::string_view content, const std::filesystem::path&) {
     TIFFSetDirectory(tiff.get(), 0);
     StoredImage head;
     head.channels = page.samples;
-    head.sizes = {page.width, page.height, static_cast<std::int64_t>(pages.size())};
-    if (pages.size() < 2) {
+    auto [spacing, unit, slices] = calibration_of(tiff.get(), pages.size());
+    slices = slices == 0 ? static_cast<std::int64_t>(pages.size()) : slices;
+    head.sizes = {page.width, page.height, slices};
+    if (slices < 2) {
         head.sizes.pop_back();  // and is refused
     }
-    const auto [spacing, unit] = calibration_of(tiff.get(), pages.size());
     head.frame.steps = {Point{spacing[0], 0, 0}, Point{0, spacing[1], 0}, Point{0, 0, spacing[2]}};
     head.frame.unit = unit;
     Image image = frame_of(head);
     const std::size_t slice = std::size_t{page.width} * page.height;
+    if (slices > static_cast<std::int64_t>(pages.size())) {
+        const std::uint64_t all = slice * static_cast<std::uint64_t>(slices) * bytes_per_number(tiff_type(page));
+        const std::optional<StoredData> data =
+            pages.size() == 1 && page.bits != 1 ? slices_of_page(tiff.get(), content, all) : std::nullopt;
+        if (!data) {
+            fail_at_pages(slices, pages.size());
+        }
+        head.type = tiff_type(page);
+        head.order = TIFFIsBigEndian(tiff.get()) != 0 ? std::endian::big : std::endian::little;
+        head.parts = {*data};
+        return read_stored(head);
+    }
     const std::uint64_t promised = slice * pages.size() * bytes_per_number(tiff_type(page));
     check_packed_bytes(promised, content.size(), kMostFromTiffByte);
     image.values.resize(slice * pages.size());
