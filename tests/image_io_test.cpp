@@ -94,6 +94,15 @@ std::string bytes() {
     return result;
 }
 
+/// The same as numbers with blanks between them.
+std::string as_text(const std::string& bytes) {
+    std::string result;
+    for (const char c : bytes) {
+        result += std::to_string(static_cast<unsigned char>(c)) + ' ';
+    }
+    return result;
+}
+
 void expect_bytes(const Image& image) {
     EXPECT_EQ(image.sizes, (std::array<Index, 3>{2, 3, 4}));
     ASSERT_EQ(image.values.size(), 24u);
@@ -1196,7 +1205,8 @@ TEST_F(ImageIo, FaultsOfHeadsOfVtk) {
     expect_error("DIMENSIONS 2 3 4", "DIMENSIONS 2 3", "line 5");
     expect_error("unsigned_char 1", "bit 1", "line 9: values of type 'bit' cannot be read");
     expect_error("unsigned_char 1", "unsigned_char 3", "3 values a voxel");
-    expect_error("POINT_DATA", "CELL_DATA", "line 8: 'cell_data' cannot be read");
+    expect_error("POINT_DATA 24", "VECTORS v float", "line 8: 'vectors' cannot be read");
+    expect_error("POINT_DATA 24", "FIELD f 1\nx 1 1000000 double", "end within a field");
     expect_error("BINARY", "BASE64", "line 3: 'base64' stands where `ASCII` or `BINARY` should");
     expect_in("head does not end", error_of("bad.vtk", good.substr(0, good.find("SCALARS"))));
 }
@@ -1224,6 +1234,43 @@ TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
         const std::string unit = little(std::uint16_t{296}) + little(std::uint16_t{3});
         return preview.find(unit, preview.find(unit) + 1);
     }();
+TEST_F(ImageIo, ValuesOfCellsOfVtkLieInTheirMiddles) {
+    for (const bool is_text : {false, true}) {
+        const std::string data = is_text ? as_text(bytes()) : bytes();
+        const std::string cells =
+            changed(changed(vtk(is_text ? "ASCII" : "BINARY", "3 4 5"), "POINT_DATA", "CELL_DATA"),
+                    "SPACING 1 1 1\nORIGIN 0 0 0", "SPACING 2 4 6\nORIGIN 10 0 0");
+        const Image image = read_image(write("cells.vtk", cells + data));
+        expect_bytes(image);
+        EXPECT_EQ(image.origin, (Point{11, 2, 3}));
+        EXPECT_EQ(image.steps[2], (Point{0, 0, 6}));
+    }
+}
+
+// VTK writes arrays of bytes as colours, those that are not active as fields, and fields of its own before all.
+TEST_F(ImageIo, ArraysOfVtkThatAreNotCalledScalars) {
+    const std::string scalars = "SCALARS values unsigned_char 1\nLOOKUP_TABLE default\n";
+    const std::string field = "FIELD FieldData 2\nvalues 1 24 unsigned_char\n";
+    const std::string time = std::string(8, '\x0a') + "\nMETADATA\nINFORMATION 0\n\n";
+    expect_bytes(read_image(write("a.vtk", changed(vtk("BINARY"), scalars, "COLOR_SCALARS values 1\n") + bytes())));
+    expect_bytes(read_image(write("a.vtk", changed(vtk("BINARY"), scalars, field) + bytes())));
+    expect_bytes(read_image(write("a.vtk", changed(vtk("ASCII"), scalars, field) + as_text(bytes()))));
+    expect_bytes(read_image(write(
+        "a.vtk",
+        changed(vtk("BINARY"), "DIMENSIONS", "FIELD FieldData 1\nTIME 1 1 double\n" + time + "DIMENSIONS") + bytes())));
+    expect_bytes(read_image(
+        write("a.vtk", changed(vtk("ASCII"), "DIMENSIONS", "FIELD FieldData 1\nTIME 1 2 double\n1.5\n2.5\nDIMENSIONS") +
+                           as_text(bytes()))));
+    // Text has shares of 255, rounded.
+    std::ostringstream shares;
+    for (const char c : bytes()) {
+        shares << static_cast<unsigned char>(c) / 255.0 << ' ';
+    }
+    expect_bytes(read_image(write("a.vtk", changed(vtk("ASCII"), scalars, "COLOR_SCALARS values 1\n") + shares.str())));
+    expect_in("3 values a voxel",
+              error_of("a.vtk", changed(vtk("BINARY"), scalars, "COLOR_SCALARS values 3\n") + bytes()));
+}
+
     preview.replace(second_unit, 2, little(std::uint16_t{254}));
     preview.replace(second_unit + 8, 4, little(std::uint32_t{1}));
     const Image image = read_image(write("preview.tif", preview));

@@ -22,6 +22,12 @@ std::optional<HeadField> take_vtk_field(std::string_view& content, std::size_t& 
 /// how many it had
 void take_vtk_head(std::string_view& content, std::string_view kind, bool& is_text, std::size_t& lines);
 
+/// Takes lines off the content, up to one that is empty.
+void skip_vtk_metadata(std::string_view& content, std::size_t& number);
+
+/// Takes arrays of any numbers off the content, behind the line `FIELD` that says how many. \throws FileError
+void skip_vtk_fields(std::string_view& content, const HeadField& field, bool is_text, std::size_t& number);
+
 /// Has the content that kind of data set, as far as its beginning tells?
 bool is_vtk_legacy(std::string_view content, std::string_view kind);
 

@@ -164,12 +164,9 @@ class Body {
         return *field;
     }
 
-    void skip_to_empty_line() {
-        while (!rest_.empty() && !trimmed(take_line(rest_)).empty()) {
-            ++line_;
-        }
-        ++line_;
-    }
+    void skip_metadata() { skip_vtk_metadata(rest_, line_); }
+
+    void skip_fields(const HeadField& field) { skip_vtk_fields(rest_, field, is_text_, line_); }
 
     std::vector<double> numbers(std::size_t count, NumberType type) {
         std::vector<double> result;
@@ -250,27 +247,6 @@ void read_cells(Body& body, const HeadField& field, bool has_offsets, Cells kind
     add_cells(kind, corners, ends, 0, data);
 }
 
-/// Arrays of any values before the points.
-void skip_fields(Body& body, const HeadField& field) {
-    const std::size_t arrays = count_in(field, 1);
-    for (std::size_t i = 0; i < arrays; ++i) {
-        std::optional<HeadField> array = body.next();
-        if (array && array->name == "metadata") {
-            body.skip_to_empty_line();
-            array = body.next();
-        }
-        if (!array) {
-            throw truncated("its data end within a field");
-        }
-        const std::size_t components = count_in(*array, 0);
-        const std::size_t tuples = count_in(*array, 1);
-        if (tuples > 0 && components > std::numeric_limits<Index>::max() / tuples) {
-            array->fail("a field of this size is in no file");
-        }
-        body.numbers(components * tuples, type_in(*array, 2));
-    }
-}
-
 PolyData read_legacy(std::string_view content) {
     Body body(content);
     const bool has_offsets = content.substr(0, 64).find("Version 5") != std::string_view::npos;
@@ -287,9 +263,9 @@ PolyData read_legacy(std::string_view content) {
         } else if (field->name == "lines") {
             read_cells(body, *field, has_offsets, Cells::kLines, data);
         } else if (field->name == "metadata") {
-            body.skip_to_empty_line();
+            body.skip_metadata();
         } else if (field->name == "field") {
-            skip_fields(body, *field);
+            body.skip_fields(*field);
         } else if (field->name == "point_data" || field->name == "cell_data") {
             break;  // values, which follow the surface
         } else {
