@@ -21,6 +21,7 @@ bool is_stdin(const fs::path& file) { return file == "-" || file == "/dev/stdin"
 bool has_extension_of_input(const fs::path& file, const std::vector<std::string>& extensions) {
     std::string name = file.filename().string();
     std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    name = name.ends_with(".gz") ? name.substr(0, name.size() - 3) : name;
     return std::ranges::any_of(extensions, [&](const std::string& extension) {
         return extension != ".txt" && name.size() > extension.size() && name.ends_with(extension);
     });

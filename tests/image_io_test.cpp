@@ -715,6 +715,29 @@ TEST_F(ImageIo, NothingIsMadeUpOfDataThatAreMissing) {
     expect_in("24 values, but there are 23", error_of("short.vtk", text.substr(0, text.size() - 3)));
 }
 
+TEST_F(ImageIo, AnyFormatMayBePackedByGzip) {
+    const std::string stl =
+        "solid s\nfacet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+        "endloop\nendfacet\nendsolid\n";
+    const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    for (const auto& [name, content] : {std::pair(std::string("a.stl.gz"), stl), {"a.obj.gz", obj}, {"a", obj}}) {
+        SCOPED_TRACE(name);
+        const fs::path file = write(name, packed(content, true));
+        EXPECT_EQ(file_kind(file), FileKind::kMesh);
+        const TriangleMesh mesh = read_mesh(file);
+        EXPECT_EQ(mesh.vertices, (std::vector<Point>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}));
+        EXPECT_EQ(mesh.triangles.size(), 1u);
+    }
+    const std::string gzip = packed(obj, true);
+    EXPECT_EQ(read_mesh(FileBytes{std::as_bytes(std::span(gzip)), "stdin"}).triangles.size(), 1u);
+    EXPECT_EQ(read_points(write("a.xyz.gz", packed("1 2 3\n4 5 6\n", true))).points.size(), 2u);
+    expect_bytes(read_image(write("a.vtk.gz", packed(vtk("BINARY") + bytes(), true))));
+    expect_bytes(read_image(write("a.tif.gz", packed(tiff(bytes()), true))));
+    expect_bytes(read_image(write("a.nii.gz", packed(nifti(bytes()), true))));
+    expect_in("compressed data end before", error_of("short.vtk.gz", gzip.substr(0, gzip.size() - 9)));
+    expect_in("the file is empty", error_of("empty.vtk.gz", packed("", true)));
+}
+
 // Ten thousand voxels along each axis, and next to none of them there.
 TEST_F(ImageIo, NoMemoryIsTakenForWhatAHeadPromises) {
     const std::string nrrd = "NRRD0004\ntype: float\nendian: little\ndimension: 3\nsizes: 10000 10000 10000\n";
@@ -1211,29 +1234,6 @@ TEST_F(ImageIo, FaultsOfHeadsOfVtk) {
     expect_in("head does not end", error_of("bad.vtk", good.substr(0, good.find("SCALARS"))));
 }
 
-TEST_F(ImageIo, NiftiWithImpossibleSizes) {
-    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {-2, -3, 4})));
-    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {2, 0, 4})));
-    std::string distant = nifti(bytes());
-    distant.replace(280, 4, little(3e38F));
-    expect_in("no finite numbers that an image can have", error_of("far.nii", distant));
-}
-
-/// `content` with the last field of this number replaced by one that means nothing.
-std::string without_last_field(std::string content, std::uint16_t tag) {
-    const std::size_t at = content.rfind(little(tag) + little(std::uint16_t{3}));
-    return content.replace(at, 2, little(std::uint16_t{65000}));
-}
-
-TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
-    // Absent bits are 1.
-    expect_in("page 4 has values of another kind", error_of("bits.tif", without_last_field(tiff(bytes()), 258)));
-    // The second page becomes a preview.
-    std::string preview = tiff(bytes());
-    const auto second_unit = [&] {
-        const std::string unit = little(std::uint16_t{296}) + little(std::uint16_t{3});
-        return preview.find(unit, preview.find(unit) + 1);
-    }();
 TEST_F(ImageIo, ValuesOfCellsOfVtkLieInTheirMiddles) {
     for (const bool is_text : {false, true}) {
         const std::string data = is_text ? as_text(bytes()) : bytes();
@@ -1271,6 +1271,29 @@ TEST_F(ImageIo, ArraysOfVtkThatAreNotCalledScalars) {
               error_of("a.vtk", changed(vtk("BINARY"), scalars, "COLOR_SCALARS values 3\n") + bytes()));
 }
 
+TEST_F(ImageIo, NiftiWithImpossibleSizes) {
+    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {-2, -3, 4})));
+    expect_in("a size that no image has", error_of("bad.nii", nifti(bytes(), {2, 0, 4})));
+    std::string distant = nifti(bytes());
+    distant.replace(280, 4, little(3e38F));
+    expect_in("no finite numbers that an image can have", error_of("far.nii", distant));
+}
+
+/// `content` with the last field of this number replaced by one that means nothing.
+std::string without_last_field(std::string content, std::uint16_t tag) {
+    const std::size_t at = content.rfind(little(tag) + little(std::uint16_t{3}));
+    return content.replace(at, 2, little(std::uint16_t{65000}));
+}
+
+TEST_F(ImageIo, PagesOfTiffHaveValuesOfOneKind) {
+    // Absent bits are 1.
+    expect_in("page 4 has values of another kind", error_of("bits.tif", without_last_field(tiff(bytes()), 258)));
+    // The second page becomes a preview.
+    std::string preview = tiff(bytes());
+    const auto second_unit = [&] {
+        const std::string unit = little(std::uint16_t{296}) + little(std::uint16_t{3});
+        return preview.find(unit, preview.find(unit) + 1);
+    }();
     preview.replace(second_unit, 2, little(std::uint16_t{254}));
     preview.replace(second_unit + 8, 4, little(std::uint32_t{1}));
     const Image image = read_image(write("preview.tif", preview));
@@ -1538,6 +1561,15 @@ TEST_F(ImageIo, CalibrationOfTiff) {
     expect(changed(changed(ome(sizes), "<Pixels", "<o:Pixels"), "</Pixels", "</o:Pixels"), {0.5, 0.25, 1.5}, "um");
     expect(ome("PhysicalSizeX=\"-1\" PhysicalSizeY=\"x\" PhysicalSizeZ=\"inf\""), {1, 1, 1}, "");
     expect("<xml that ends", {0.2, 0.5, 1}, "", 3);
+    // tifffile: ImageJ's words; inches are what it writes where nothing is said.
+    expect(R"({"shape": [4, 3, 2]})", {1, 1, 1}, "");
+    expect(R"({"shape": [1, 4, 1, 3, 2], "axes": "TZCYX"})", {0.2, 0.5, 1}, "", 3);
+    expect(R"({"shape": [3, 2]})", {0.2, 0.5, 1}, "", 3);  // each page by itself
+    expect(R"({"shape": [4, 3, 2], "axes": "ZYX", "spacing": 0.3, "unit": "micron"})", {0.02, 0.05, 0.3}, "um", 2);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3, "unit": "um"})", {200, 500, 0.3}, "um", 3);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3})", {0.2, 0.5, 0.3}, "", 3);
+    expect(R"({"shape": 4, "spacing": "x"})", {0.2, 0.5, 1}, "", 3);
+    expect("{no JSON", {0.2, 0.5, 1}, "", 3);
 
     const auto error = [&](const std::string& description) {
         return error_of("bad.tif", tiff(bytes(), 2, description));
@@ -1545,9 +1577,28 @@ TEST_F(ImageIo, CalibrationOfTiff) {
     expect_in("several channels", error("ImageJ=1.53t\nimages=4\nchannels=2\nslices=2\n"));
     expect_in("several frames", error("ImageJ=1.53t\nimages=4\nframes=2\nslices=2\n"));
     expect_in("9 slices, but has 4 pages", error("ImageJ=1.53t\nimages=9\nslices=9\n"));
+    expect_in("9 slices, but has 4 pages", error(R"({"shape": [9, 3, 2]})"));
+    expect_in("several volumes", error(R"({"shape": [2, 2, 3, 2]})"));
+    expect_in("several volumes", error(R"({"shape": [2, 3, 2]})"));
+    expect_in("several channels", error(R"({"shape": [4, 1, 3, 2], "axes": "CZYX"})"));
+    expect_in("several times", error(R"({"shape": [1, 4, 3, 2], "axes": "CTYX"})"));
     expect_in("several channels", error(changed(ome(sizes), "SizeC=\"1\"", "SizeC=\"2\"")));
     expect_in("several times", error(changed(ome(sizes), "SizeT=\"1\"", "SizeT=\"2\"")));
     expect_in("8 slices, but has 4 pages", error(changed(ome(sizes), "SizeZ=\"4\"", "SizeZ=\"8\"")));
+}
+
+// ImageJ writes stacks beyond 4 GB so, and tifffile if it is told to.
+TEST_F(ImageIo, TiffWhoseOnlyPageHasAllSlices) {
+    for (const std::string description :
+         {R"({"shape": [4, 3, 2], "truncated": true})", "ImageJ=1.53t\nimages=4\nslices=4\n"}) {
+        std::string one = tiff(bytes().substr(0, 6), 2, description, 1);
+        const std::string place = little(std::uint16_t{273}) + little(std::uint16_t{4}) + little(1);
+        const std::size_t at = one.find(place);
+        ASSERT_NE(at, std::string::npos);
+        one.replace(at + place.size(), 4, little(static_cast<std::uint32_t>(one.size())));
+        expect_bytes(read_image(write("one.tif", one + bytes())));
+        expect_in("4 slices, but has 1 pages", error_of("short.tif", one + bytes().substr(1)));
+    }
 }
 
 TEST_F(ImageIo, TiffWithSeveralPages) {
@@ -1583,31 +1634,3 @@ TEST_F(ImageIo, SaysHowToConvertDicom) {
 
 }  // namespace
 }  // namespace scaleaxis
-    // tifffile: ImageJ's words; inches are what it writes where nothing is said.
-    expect(R"({"shape": [4, 3, 2]})", {1, 1, 1}, "");
-    expect(R"({"shape": [1, 4, 1, 3, 2], "axes": "TZCYX"})", {0.2, 0.5, 1}, "", 3);
-    expect(R"({"shape": [3, 2]})", {0.2, 0.5, 1}, "", 3);  // each page by itself
-    expect(R"({"shape": [4, 3, 2], "axes": "ZYX", "spacing": 0.3, "unit": "micron"})", {0.02, 0.05, 0.3}, "um", 2);
-    expect(R"({"shape": [4, 3, 2], "spacing": 0.3, "unit": "um"})", {200, 500, 0.3}, "um", 3);
-    expect(R"({"shape": [4, 3, 2], "spacing": 0.3})", {0.2, 0.5, 0.3}, "", 3);
-    expect(R"({"shape": 4, "spacing": "x"})", {0.2, 0.5, 1}, "", 3);
-    expect("{no JSON", {0.2, 0.5, 1}, "", 3);
-    expect_in("9 slices, but has 4 pages", error(R"({"shape": [9, 3, 2]})"));
-    expect_in("several volumes", error(R"({"shape": [2, 2, 3, 2]})"));
-    expect_in("several volumes", error(R"({"shape": [2, 3, 2]})"));
-    expect_in("several channels", error(R"({"shape": [4, 1, 3, 2], "axes": "CZYX"})"));
-    expect_in("several times", error(R"({"shape": [1, 4, 3, 2], "axes": "CTYX"})"));
-// ImageJ writes stacks beyond 4 GB so, and tifffile if it is told to.
-TEST_F(ImageIo, TiffWhoseOnlyPageHasAllSlices) {
-    for (const std::string description :
-         {R"({"shape": [4, 3, 2], "truncated": true})", "ImageJ=1.53t\nimages=4\nslices=4\n"}) {
-        std::string one = tiff(bytes().substr(0, 6), 2, description, 1);
-        const std::string place = little(std::uint16_t{273}) + little(std::uint16_t{4}) + little(1);
-        const std::size_t at = one.find(place);
-        ASSERT_NE(at, std::string::npos);
-        one.replace(at + place.size(), 4, little(static_cast<std::uint32_t>(one.size())));
-        expect_bytes(read_image(write("one.tif", one + bytes())));
-        expect_in("4 slices, but has 1 pages", error_of("short.tif", one + bytes().substr(1)));
-    }
-}
-

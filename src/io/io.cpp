@@ -17,6 +17,7 @@
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
 #include "base/files.hpp"
+#include "base/formats/compressed.hpp"
 #include "base/vectors.hpp"
 #include "io/checks.hpp"
 #include "io/formats.hpp"
@@ -329,6 +330,8 @@ bool is_head_enough(std::string_view beginning) {
     return format != kFormats.end() && format->is_head_enough;
 }
 
+constexpr std::string_view kPacked = ".gz";
+
 /// Every count of elements of a file of at most this size can be held in an `Index`.
 constexpr std::size_t kMostBytes = std::numeric_limits<Index>::max();
 
@@ -477,12 +480,31 @@ auto with_name(const std::string& name, const Read& read) {
     }
 }
 
+/// Is it packed by gzip around a file of any format? Some formats have packed files of their own.
+bool is_packed(std::string_view content) {
+    return is_gzip(content) && std::ranges::none_of(kFormats, [&](const Format& format) {
+               return format.extension.ends_with(kPacked) && format.is_content(content);
+           });
+}
+
+/// What `of` makes of a content, unpacked where it is packed.
+template <class Of>
+auto of_unpacked(const Source& source, const Of& of) {
+    if (!is_packed(source.content)) {
+        return of(source);
+    }
+    const std::string content = inflated(source.content, kMostBytes + 1);
+    check_size(content.size());
+    const bool has_ending = to_lower(utf8_of(source.name)).ends_with(kPacked);
+    return of(Source{has_ending ? path(source.name).replace_extension() : source.name, content});
+}
+
 /// What `of` makes of a file.
 template <class Of>
 auto read_from(const path& file, const Of& of, bool is_enough(std::string_view) = nullptr) {
     return with_name(utf8_of(file), [&] {
         const std::string content = read_file(file, is_enough);
-        return of(Source{file, content, is_plain_file(file) ? file : path()});
+        return of_unpacked(Source{file, content, is_plain_file(file) ? file : path()}, of);
     });
 }
 
@@ -493,7 +515,7 @@ std::string_view text_of(const FileBytes& file) {
 
 template <class Of>
 auto read_from(const FileBytes& file, const Of& of) {
-    return with_name(file.name, [&] { return of(Source{file.name, text_of(file)}); });
+    return with_name(file.name, [&] { return of_unpacked(Source{file.name, text_of(file)}, of); });
 }
 
 }  // namespace

@@ -86,7 +86,8 @@ def _of_one(given: One, shared: Mapping[str, Any], options: list[Options]) -> It
         yield from _of_table(path, shared)
         return
     if os.path.isdir(path):
-        found = sorted(os.path.join(path, name) for name in os.listdir(path) if name.lower().endswith(EXTENSIONS))
+        names = [name for name in os.listdir(path) if name.lower().removesuffix(".gz").endswith(EXTENSIONS)]
+        found = sorted(os.path.join(path, name) for name in names)
         if not found:
             raise FileError(f"{path}: there are no models in this folder", "file.open")
     elif glob.has_magic(path) and not os.path.exists(path) and "://" not in path:
