@@ -26,7 +26,9 @@
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/report.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "scaleaxis/solid.hpp"
 #include "scaleaxis/thickness.hpp"
+#include "scaleaxis/topology.hpp"
 #include "source.hpp"
 #include "status.hpp"
 #include "terminal.hpp"
@@ -65,11 +67,18 @@ struct Surface {
     std::optional<TriangleMesh> bulging;  ///< closer, with vertices that lie beyond the solid; nothing: `mesh` itself
 };
 
+/// Does each component of a surface bound the solid, and each of its triangles?
+bool is_boundary(const MeshReport& report, const Solid& solid) {
+    const std::optional<Topology> topology = solid.topology();
+    return report.self_intersections == 0 && topology &&
+           report.components == topology->components + topology->voids.value_or(0);
+}
+
 /// The triangles of the input. Where there are none, or many lie inside the solid, the boundary of its samples.
 Surface surface_of(LoadedSolid& input, const Samples& samples, const Execution& execution) {
     const auto* report = std::get_if<MeshReport>(&input.input);
     const bool has_triangles = !input.mesh.triangles.empty();
-    if (has_triangles && (report == nullptr || report->self_intersections == 0)) {
+    if (has_triangles && (report == nullptr || is_boundary(*report, *input.solid))) {
         return {std::move(input.mesh), std::nullopt};
     }
     Surface surface{boundary_mesh(samples).mesh, std::nullopt};

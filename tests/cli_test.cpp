@@ -736,6 +736,26 @@ TEST_F(CommandLine, WallsThatPartsShareAreNoSurface) {
     EXPECT_NEAR(row["mean_thickness"].get<double>(), 1.0, 0.01);
 }
 
+TEST_F(CommandLine, PartsWithinOthersCountOnlyIfTheyAreVoids) {
+    scaleaxis::TriangleMesh mesh = scaleaxis::test::box_mesh({0, 0, 0}, {4, 4, 4});
+    const scaleaxis::TriangleMesh inner = scaleaxis::test::box_mesh({1, 1, 1}, {3, 3, 3});
+    const auto first = static_cast<scaleaxis::Index>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), inner.vertices.begin(), inner.vertices.end());
+    const std::vector<std::array<scaleaxis::Index, 3>> outer = mesh.triangles;
+    for (const bool is_void : {false, true}) {
+        mesh.triangles = outer;
+        for (const auto& [a, b, c] : inner.triangles) {
+            mesh.triangles.push_back({a + first, (is_void ? c : b) + first, (is_void ? b : c) + first});
+        }
+        scaleaxis::write_mesh(folder_ / "nested.off", mesh);
+        const Outcome outcome = run({"table", "nested.off", "-o", "nested.json", "-q"});
+        EXPECT_EQ(outcome.status, 0) << outcome.err;
+        const Json row = Json::parse(content(folder_ / "nested.json"))["rows"][0];
+        EXPECT_NEAR(row["area"].get<double>(), is_void ? 120.0 : 96.0, 0.02 * 96.0);
+        EXPECT_NEAR(row["volume"].get<double>(), is_void ? 56.0 : 64.0, 0.02 * 56.0);
+    }
+}
+
 TEST_F(CommandLine, WarnsOfThicknessThatVoxelsDoNotResolve) {
     std::string text = "X: 24\nY: 24\nZ: 16\nVersion: 2\n.\n";
     for (int voxel = 0; voxel < 24 * 24 * 16; ++voxel) {
