@@ -556,9 +556,11 @@ def wait_until(condition, what: str) -> None:
 @pytest.mark.skipif(not os.path.exists("/proc/self/stat"), reason="processes are told by /proc")
 @pytest.mark.parametrize("kind", [signal.SIGTERM, signal.SIGINT, signal.SIGKILL])
 @pytest.mark.parametrize("mode", [["--shard", "1/1"], ["--workers", "1"]], ids=["shard", "dask"])
-def test_stopped_in_the_middle(tmp_path, debug, mode, kind):
-    """Nothing runs on, and what was done stays."""
+def test_stopped_in_the_middle(tmp_path, debug, monkeypatch, mode, kind):
+    """Nothing runs on, what was done stays, and nothing else."""
     write_boxes(tmp_path / "models", 3)
+    (tmp_path / "temporary").mkdir()
+    monkeypatch.setenv("TMPDIR", str(tmp_path / "temporary"))
     debug(hang="box01")
     process = run_command(tmp_path / "models", "-o", tmp_path / "out", *mode, "--delta", "0.1")
     wait_until(lambda: "box01.off" in debug.computed(), "the model was never begun")
@@ -571,6 +573,7 @@ def test_stopped_in_the_middle(tmp_path, debug, mode, kind):
     says = [line for line in error.decode().splitlines() if line.startswith("scaleaxis-batch: stopped")]
     assert len(says) == (0 if kind == signal.SIGKILL else 1), error.decode()
     wait_until(lambda: not any(map(is_running, family)), "a model runs on")
+    assert not list((tmp_path / "temporary").glob("scaleaxis-*"))
     debug()
     counts = in_one_shard(tmp_path / "models", tmp_path / "out")
     assert counts.done + counts.skipped == 3 and counts.skipped >= 1 and debug.computed()["box00.off"] == 1

@@ -3,7 +3,7 @@
 
 So a model has a process for itself, which the kernel limits and measures, and which costs milliseconds; numpy and the
 library are loaded once. It reads requests, a JSON object a line, and answers each with a line. It ends with its input,
-and the model at work with it, so that nothing is left of a worker that is killed.
+and the model at work and its folder with it, so that nothing is left of a worker that is killed.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ import gc
 import json
 import os
 import select
+import shutil
 import signal
 import sys
 import time
@@ -115,8 +116,9 @@ def _run_forked(request: dict[str, Any], pipe: int) -> None:
     os.write(pipe, json.dumps(answer).encode())
 
 
-def _answer_of(pipe: int, process: int, time_limit: float | None) -> tuple[bytes, bool]:
+def _answer_of(pipe: int, process: int, request: dict[str, Any]) -> tuple[bytes, bool]:
     """What the process of the model writes until its end, and whether the time was over before."""
+    time_limit = request["time_limit"]
     deadline = None if time_limit is None else time.monotonic() + time_limit
     answer = b""
     while True:
@@ -124,6 +126,8 @@ def _answer_of(pipe: int, process: int, time_limit: float | None) -> tuple[bytes
         ready, _, _ = select.select([0, pipe], [], [], rest)
         if 0 in ready:  # nobody asks while an answer is due: it is the end
             os.kill(process, signal.SIGKILL)
+            os.waitpid(process, 0)
+            shutil.rmtree(request["folder"], ignore_errors=True)
             os._exit(0)
         if not ready:
             os.kill(process, signal.SIGKILL)
@@ -153,7 +157,7 @@ def _signal_name(number: int) -> str:
 def _answer(request: dict[str, Any]) -> dict[str, Any]:
     start = time.monotonic()
     process, read_end = forked(partial(_run_forked, request))
-    text, is_late = _answer_of(read_end, process, request["time_limit"])
+    text, is_late = _answer_of(read_end, process, request)
     os.close(read_end)
     _, status, usage = os.wait4(process, 0)
     answer: dict[str, Any]
@@ -178,5 +182,10 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     leave_signals_to_caller()
     gc.freeze()  # what is loaded stays shared with the processes of the models
+    folder = None
     for line in iter(sys.stdin.buffer.readline, b""):
-        print(json.dumps(_answer(json.loads(line))), file=answers, flush=True)
+        request = json.loads(line)
+        folder = request["folder"]
+        print(json.dumps(_answer(request)), file=answers, flush=True)
+    if folder is not None:  # gone, unless the worker was killed while it stored results
+        shutil.rmtree(folder, ignore_errors=True)

@@ -150,6 +150,7 @@ def _computed(task: Task, folder: str) -> list[Row]:
         "name": path,
         "options": {**options, "scale": [scale_of(model.options) for model in task.models]},
         "outputs": files,
+        "folder": folder,
         "messages": os.path.join(folder, "messages.txt"),
         "threads": task.threads,
         "time_limit": task.time_limit,
