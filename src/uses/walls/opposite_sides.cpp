@@ -19,37 +19,24 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// A ball is seen from a point if balls along the way leave no more than this part of it uncovered. Half of it costs a
-// third more queries at sharp edges; at twice of it, walls a tenth as thick as the limit may be leapt over.
-constexpr double kUnseen = 0.05;
+// Small beside a radius or a way. A ball is seen from a point if balls along the way leave no more than this part of it
+// uncovered, a step that is shorter meets a surface, and the middle between two sides is no farther than this from
+// where `uphill` stops. Half of it costs a third more queries at sharp edges; at twice of it, walls a tenth as thick as
+// the limit may be leapt over.
+constexpr double kSmallPart = 0.05;
 
-// A step shorter than this part of the remaining way meets a surface. Edges of 6 degrees and more let through.
-constexpr double kLeastStep = 0.05;
-
-// A ball that touches at a point is as large as this part of the distance of its centre: less at the facets of a curved
-// surface. It is found in five trials about, unless the point is on a sharp edge.
-constexpr double kTouchingPart = 0.99;
+// Of the distance of its centre: how much smaller a ball may be that touches there, at the facets of a curved surface,
+// and how far contacts are beside those of the centre. Directions whose cosine differs from 1 by less are of one
+// contact. A ball that touches is found in five trials about, unless the point is on a sharp edge.
+constexpr double kFacetPart = 0.01;
 constexpr int kTouchingTrials = 6;
-
-// Balls that the surface cuts shrink to touch it, by these factors at least and at most.
-constexpr double kLeastShrinking = 0.95;
-constexpr double kMostShrinking = 0.05;
 
 constexpr int kMostTrials = 40;  // at a sharp edge each shrinks by a half: down to 1e-12
 
-constexpr double kOvershoot = 0.05;  // radii; uphill stops within 0.002 radii of the ridge, two sides flatter than this
-
 constexpr int kCenterings = 8;  // a ball near a rim, off the middle, takes three
 
-// Contacts this much apart, by the cosine, are not of the same side.
-constexpr double kSameSide = 0.5;
-
-constexpr double kSameContact = 0.98;  // cosine of 11 degrees
 constexpr std::size_t kMostContacts = 5;
-constexpr double kLeastSlope = 0.2;    // of the slope that counts: below it three halvings lead no farther
-constexpr double kSlopeMargin = 1.02;  // of its square, for contacts found a hundredth of a radius beside the centre
 
-constexpr double kLevel = 1e-4;     // growth along a wall that is none
 constexpr int kMostDownSteps = 60;  // a wedge is left by a tenth of its width or more with each step
 constexpr int kDownTrials = 4;      // halvings of a step
 
@@ -72,13 +59,13 @@ Probe probe(const Solid& solid, const Point& p, const Point& inwards, double len
     Probe result{{}, nearest_within(solid, end, length), false};
     result.ball = {end, distance(result.nearest, end)};
     double left = length - result.ball.radius;
-    if (result.ball.radius < kLeastStep * length) {
+    if (result.ball.radius < kSmallPart * length) {
         return result;
     }
-    while (left > kUnseen * length) {
+    while (left > kSmallPart * length) {
         const Point at = p + left * inwards;
         const double step = distance(nearest_within(solid, at, left), at);
-        if (step < kLeastStep * left) {
+        if (step < kSmallPart * left) {
             return result;
         }
         if (step > result.ball.radius) {
@@ -98,15 +85,12 @@ Ball centered_between(const Solid& solid, const Ball& ball) {
     const Point a = nearest_within(solid, ball.center, ball.radius);
     const double radius = distance(a, ball.center);
     const Point from_a = unit(ball.center - a);
-    const Point beyond = ball.center + kOvershoot * radius * from_a;
-    const Point b = nearest_within(solid, beyond, (1.0 + kOvershoot) * radius);
+    const Point beyond = ball.center + kSmallPart * radius * from_a;
+    const Point b = nearest_within(solid, beyond, (1.0 + kSmallPart) * radius);
     const Point from_b = unit(beyond - b);
-    const double cosine = dot(from_a, from_b);
-    if (cosine > kSameSide) {
-        return ball;
-    }
-    const double way = (dot(ball.center - b, from_b) - radius) / (1.0 - cosine);
-    if (!(std::abs(way) <= kOvershoot * radius)) {
+    // Far, or nowhere, if both contacts are of one side.
+    const double way = (dot(ball.center - b, from_b) - radius) / (1.0 - dot(from_a, from_b));
+    if (!(std::abs(way) <= kSmallPart * radius)) {
         return ball;
     }
     const Point center = ball.center + way * from_a;
@@ -131,8 +115,8 @@ Ball centered(const Solid& solid, Ball ball) {
 // radius grows slowly, but no two contacts are.
 Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) {
     Ball ball = start;
-    for (double least = slope; least > kLeastSlope * slope; least *= 0.5) {
-        ball = uphill(solid, ball, least, most);
+    for (const double part : {1.0, 0.5, 0.25}) {
+        ball = uphill(solid, ball, part * slope, most);
         if (!(ball.radius < most)) {
             break;
         }
@@ -140,7 +124,7 @@ Ball on_ridge(const Solid& solid, const Ball& start, double slope, double most) 
         // Half the angle between the contacts has this cosine.
         const auto [a, b] = opposite_contacts(solid, ball);
         const double half = 0.5 * distance(a, b);
-        if (half * half >= (1.0 - kSlopeMargin * slope * slope) * ball.radius * ball.radius) {
+        if (half * half >= (1.0 - (1.0 + 2.0 * kFacetPart) * slope * slope) * ball.radius * ball.radius) {
             break;
         }
     }
@@ -189,20 +173,20 @@ Ball ball_between_sides(const Solid& solid, const Point& p, const Point& inwards
     const auto shrunk = [&](double length, const Point& contact) {
         const double height = dot(contact - p, inwards);
         const double touching = height > 0.0 ? squared_distance(contact, p) / (2.0 * height) : 0.0;
-        return std::clamp(touching, kMostShrinking * length, kLeastShrinking * length);
+        return std::clamp(touching, kSmallPart * length, (1.0 - kSmallPart) * length);
     };
     double length = most;
     for (int trial = 0; trial < kTouchingTrials; ++trial) {
         const Ball ball{p + length * inwards, 0.0};
         const Point contact = nearest_within(solid, ball.center, length);
         const double radius = distance(contact, ball.center);
-        if (radius >= kTouchingPart * length) {
+        if (radius >= (1.0 - kFacetPart) * length) {
             if (!solid.inside(ball.center)) {
                 break;
             }
             // Between the facets of a curved surface it is a little less.
-            return radius >= kTouchingPart * most ? Ball{ball.center, most}
-                                                  : on_ridge(solid, {ball.center, radius}, slope, most);
+            return radius >= (1.0 - kFacetPart) * most ? Ball{ball.center, most}
+                                                       : on_ridge(solid, {ball.center, radius}, slope, most);
         }
         length = shrunk(length, contact);
     }
@@ -234,12 +218,12 @@ std::array<Point, 2> opposite_contacts(const Solid& solid, const Ball& ball) {
     std::size_t count = 1;
     Point sum = unit(contacts[0] - ball.center);
     // Away from the contacts that are known there is another, unless the ball grows that way.
-    for (const double part : {0.001, 0.01, 0.01, kOvershoot}) {
+    for (const double part : {0.001, 0.01, 0.01, kSmallPart}) {
         const double way = part * ball.radius;
         const Point other = nearest_within(solid, ball.center - way * unit(sum), ball.radius + way);
         const Point seen = unit(other - ball.center);
         if (std::ranges::none_of(std::span(contacts).first(count), [&](const Point& contact) {
-                return dot(seen, unit(contact - ball.center)) > kSameContact;
+                return dot(seen, unit(contact - ball.center)) > 1.0 - kFacetPart;
             })) {
             contacts[count++] = other;
             sum = sum + seen;
@@ -261,7 +245,7 @@ Ball downhill(const Solid& solid, Ball ball, double slope) {
         const auto [a, b] = opposite_contacts(solid, ball);
         const Point lean = unit(a - ball.center) + unit(b - ball.center);
         const double fall = 0.5 * norm(lean);
-        if (fall < kLevel) {
+        if (fall < kNoGrowth) {
             break;
         }
         double step = 2.0 * ball.radius * fall;  // to the lowest place between a plane and a point

@@ -38,18 +38,13 @@ constexpr std::string_view kSizesStage = "sizes";
 constexpr double kDefaultLeast = 1e-3;  // of the diagonal: the size on a knife's edge, where nothing is said
 
 // Between two places where the size is known it may exceed what is asked for by this part. Half of it takes twice the
-// layers in walls, and four times the vertices where sizes change.
+// layers in walls, and four times the vertices where sizes change. Sizes at the ends of an edge that differ by less
+// than twice of it are those of one wall: a taper of which edges are as long as `kEdgeOfSize` allows differs by less.
 constexpr double kExcess = 0.1;
-
-// Sizes at the ends of an edge that differ by less than this part are those of one wall: a taper of which edges are
-// as long as `kEdgeOfSize` allows differs by less.
-constexpr double kEven = 0.2;
 
 // The longest edge, in sizes, at which the surface is looked at, besides `WallOptions::edge`.
 // Tetrahedra of the background are as long, and stay in a wall; twice as long they would leave bends of sheet metal.
 constexpr double kEdgeOfSize = 8.0;
-
-constexpr double kRoom = 1.01;  // more than the rounding of balls that fill the box
 
 constexpr int kSizeRefinements = 12;                    // an edge of the diagonal is halved to 1/4000 of it
 constexpr std::size_t kMostSizedTriangles = 4'000'000;  // about 4 GB; sizes between vertices are interpolated then
@@ -117,9 +112,9 @@ class SizeSearch {
         slope_ = cosine_of_degrees(0.5 * options.angle);
         most_ = std::min(options.max_size.value_or(diagonal), diagonal);
         least_ = std::min(options.min_size.value_or(kDefaultLeast * diagonal), most_);
-        // No ball in the solid is larger than its box is wide; larger ones outside are next to a wall of the solid.
+        // No ball in the solid has half this radius and more; as large ones outside are next to a wall of the solid.
         const Point sides = solid.bounds().max - solid.bounds().min;
-        most_radius_ = std::min(options.elements_across * most_, kRoom * std::min({sides.x, sides.y, sides.z})) / 2.0;
+        most_radius_ = std::min({0.5 * options.elements_across * most_, sides.x, sides.y, sides.z});
         data_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), WallOptions{}.edge * diagonal);
     }
 
@@ -227,7 +222,7 @@ class SizeSearch {
 
     bool is_even(Index a, Index b) const {
         const auto [low, high] = std::minmax(places_[a].size, places_[b].size);
-        return high - low <= kEven * low;
+        return high - low <= 2.0 * kExcess * low;
     }
 
     bool is_long(Index a, Index b) const {

@@ -35,17 +35,16 @@ constexpr std::string_view kWallsStage = "walls";
 // Accuracy of values, as a part of a limit, which `uphill` and rims leave out.
 constexpr double kValueTolerance = 3e-3;
 
-// Balls are looked for up to these multiples of a limit: of thin walls and gaps, so that what is thinner shows beside
-// its thinnest place, too; and of thick walls.
+// Balls are looked for up to this multiple of a limit of thin walls and gaps, so that what is thinner shows beside its
+// thinnest place, too.
 constexpr double kCapLimits = 2.0;
-constexpr double kThickCap = 1.05;
 
-// Edges where something thin may be are halved until they are shorter than this part of what is opposite, or of the
-// limit; sharp edges in any case.
-constexpr double kEdgeOfValue = 0.5;
+// Edges where something thin may be are halved until they are shorter than this part of the limit, or than the radius
+// of the ball there; sharp edges in any case.
 constexpr double kEdgeOfLimit = 0.3;
 
-// Values that differ by less, as a part of the limit, are those of one wall, with nothing else in between.
+// Of the limit: values that differ by less are those of one wall, with nothing else in between, and the contacts of a
+// smaller ball do not tell its direction.
 constexpr double kUniform = 0.02;
 
 constexpr double kTip = 0.17;  // sine of 10 degrees, by which faces fall back at a sharp edge of 160
@@ -53,16 +52,7 @@ constexpr double kTip = 0.17;  // sine of 10 degrees, by which faces fall back a
 constexpr int kRefinements = 10;               // an edge of 2 limits is halved three times
 constexpr std::size_t kMostAdded = 2'000'000;  // triangles; values between vertices are interpolated then
 
-// Vertices up to this multiple of the limit may lie beside a thin place.
-constexpr double kBesideLimit = 1.6;
-
 constexpr std::ptrdiff_t kMostDescents = 4;  // from the lowest vertices of a finding that have none lower beside them
-
-constexpr double kSameBall = 0.5;  // of the sum of two radii: balls with centres as near lie in one wall
-
-constexpr double kThickSlope = 0.02;  // growth at which a ball is taken to be the largest around
-
-constexpr double kPointSize = 0.02;  // of the limit: the contacts of a smaller ball do not tell its direction
 
 // Appends to which vertices point to one side: the surface falls back around them, on sharp edges and where its radius
 // of curvature is small.
@@ -115,8 +105,8 @@ class WallSearch {
             walls_.tolerance = std::max(walls_.tolerance, kValueTolerance * limit.value_or(0.0));
         }
         if (options.min_wall || options.max_wall) {
-            walls_.wall_cap =
-                std::max(kCapLimits * options.min_wall.value_or(0.0), kThickCap * options.max_wall.value_or(0.0));
+            walls_.wall_cap = std::max(kCapLimits * options.min_wall.value_or(0.0),
+                                       (1.0 + kUniform) * options.max_wall.value_or(0.0));
             sides_.push_back({solid_, -1.0, 0.5 * walls_.wall_cap, options.min_wall, {}, {}});
         }
         if (options.min_gap) {
@@ -183,7 +173,7 @@ class WallSearch {
         if (side.is_tip[a] != 0 && side.is_tip[b] != 0) {
             return length > kEdgeOfLimit * limit;
         }
-        return low < kCapLimits * limit && length > std::max(kEdgeOfValue * low, kEdgeOfLimit * limit) &&
+        return low < kCapLimits * limit && length > std::max(0.5 * low, kEdgeOfLimit * limit) &&
                high - low > kUniform * limit;
     }
 
@@ -237,7 +227,7 @@ class WallSearch {
         }
         const double limit = *side.limit - walls_.tolerance;
         const std::vector<Index> beside = lowest_vertices(side, 1.0, kUniform, [&](Index v) {
-            return side.value(v) >= limit && side.value(v) < kBesideLimit * *side.limit;
+            return side.value(v) >= limit && side.value(v) < kCapLimits * *side.limit;
         });
         auto found = mapped<Ball>(
             beside.size(), [&](std::size_t i) { return downhill(side.solid, side.balls[beside[i]], slope_); },
@@ -257,8 +247,9 @@ class WallSearch {
         insert(side, points, balls);
     }
 
+    // Is the centre of either nearer to the other one than the mean radius?
     static bool are_of_one_wall(const Ball& a, const Ball& b) {
-        return distance(a.center, b.center) <= kSameBall * (a.radius + b.radius);
+        return 2.0 * distance(a.center, b.center) <= a.radius + b.radius;
     }
 
     // Points of the surface as vertices; those in a triangle where there is one already are left out.
@@ -432,7 +423,7 @@ class WallSearch {
             findings.size(),
             [&](std::size_t f) {
                 Finding& finding = findings[f];
-                finding.ball = is_thick ? uphill(side.solid, side.balls[starts[f].front()], kThickSlope)
+                finding.ball = is_thick ? uphill(side.solid, side.balls[starts[f].front()], kNoGrowth)
                                         : smallest_ball(side, chosen_starts(side, starts[f]));
                 finding.value = 2.0 * finding.ball.radius;
                 finding.contacts = opposite_contacts(side.solid, finding.ball);
@@ -473,7 +464,7 @@ class WallSearch {
     // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
     Point direction_of(const SurfaceSide& side, const Finding& finding, Index f,
                        const std::vector<Index>& vertex_findings) const {
-        const double point_size = kPointSize * finding.limit;
+        const double point_size = kUniform * finding.limit;
         if (finding.ball.radius > point_size) {
             return unit(finding.contacts[1] - finding.contacts[0]);
         }
