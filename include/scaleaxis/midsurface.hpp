@@ -52,7 +52,7 @@ struct Midsurface {
 ///   or with less area than its square, go too. Curves stand
 ///   for rods, and are left out.
 /// - The border goes on, along the tangent of its sheet, up to the boundary of the solid, with the same thickness;
-///   where none is within 1.6 radii it stays.
+///   where none is within 2 radii it stays.
 ///
 /// Empty where the solid has no walls, as a ball. \param complex best extended to sharp edges (see
 /// `extend_to_sharp_edges`); its envelope stands for the solid \throws InvalidOption, UnusableInput (see `check`;

@@ -11,7 +11,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kAscentReach = 0.5;  // of the radius
 constexpr std::size_t kMostFaceVertices = 100;
 
 }  // namespace
@@ -28,7 +27,7 @@ std::vector<std::uint8_t> steep_vertices(const MedialComplex& complex, std::span
             for (std::size_t i = 0; i < seen.size() && !is_steep; ++i) {
                 for (const Index v : neighbors[seen[i]]) {
                     const double way = distance(complex.vertices[v], ball.center);
-                    const bool is_near = i == 0 || way <= kAscentReach * ball.radius;
+                    const bool is_near = i == 0 || way <= kNearby * ball.radius;
                     if (is_near && seen.size() < kMostFaceVertices && std::ranges::find(seen, v) == seen.end()) {
                         seen.push_back(v);
                         is_steep =

@@ -43,53 +43,7 @@ namespace {
 
 constexpr std::string_view kMidsurfaceStage = "midsurface";
 
-// Seams where four sheets meet are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7 radii.
-// Without this sheets that cross stay joined at the ends of their seam; at 0.25 sheets of thin panels become one.
-constexpr double kSeamWidth = 0.1;
-
-// Of the radius: as far from the border a seam may end that goes on to it. The border is one radius from the rim.
-constexpr double kSeamReach = 0.5;
-// Up to this part of the radius a sheet counts for its tangent at the border.
-constexpr double kTangentReach = 0.5;
-// How far the boundary may be from the border, in radii: in a corner of 90 degrees of a plate it is at √2. Ways that
-// are longer run along a wall, as where the free edge of a rib ends in it.
-constexpr double kFarthest = 1.6;
-// A wall floods no face that has a vertex with a radius below this part of its own: from a wall balls grow towards
-// junctions, and what shrinks runs into a convex edge. At 0.5 plates get spikes, thin as that; radii differ by some
-// hundredths in one wall.
-constexpr double kDescent = 0.9;
-// Where directions around a vertex of the border cancel out more than this there is no way on.
-constexpr double kLeastAgreement = 0.3;
-
 using Flags = std::vector<std::uint8_t>;
-
-// The faces at each edge: how many, and the first two.
-struct EdgeFaces {
-    Index count = 0;
-    std::array<Index, 2> faces{kNone, kNone};
-};
-
-std::vector<EdgeFaces> faces_of_edges(const MedialComplex& complex) {
-    std::vector<EdgeFaces> edges(complex.edges.size());
-    for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
-        for (const Index e : complex.face_edges[f]) {
-            EdgeFaces& edge = edges[e];
-            if (edge.count < 2) {
-                edge.faces[edge.count] = f;
-            }
-            ++edge.count;
-        }
-    }
-    return edges;
-}
-
-Point center_of(const MedialComplex& complex, Index f) {
-    Point sum;
-    for (const Index v : complex.faces[f]) {
-        sum = sum + complex.vertices[v];
-    }
-    return (1.0 / static_cast<double>(complex.faces[f].size())) * sum;
-}
 
 double length_of(const MedialComplex& complex, Index e) {
     return distance(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
@@ -125,7 +79,7 @@ MedialComplex without_slopes(MedialComplex walls, double angle, const Solid& sol
         return area;
     };
     for (Index v = 0; v < static_cast<Index>(balls.size()); ++v) {
-        if (walls.radii[v] < kDescent * balls[v].radius) {
+        if (walls.radii[v] < (1.0 - kSamplingError) * balls[v].radius) {
             const double before = area_at(v);
             const Point place = std::exchange(walls.vertices[v], balls[v].center);
             if (area_at(v) > before) {
@@ -155,28 +109,22 @@ MedialComplex part(const MedialComplex& complex, const Flags& keeps_face) {
 
 // Of these faces those in parts of sheets that are wide enough.
 Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
-    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
+    const IndexLists faces_at = faces_at_edges(complex);
     const SurfaceParts found = parts_of_faces(
         faces, [&](Index f) { return face_area(complex, f); },
-        [&](Index f) {
-            double radius = 0.0;
-            for (const Index v : complex.faces[f]) {
-                radius += complex.radii[v] / static_cast<double>(complex.faces[f].size());
-            }
-            return 2.0 * radius;
-        },
+        [&](Index f) { return mean_ball(complex, complex.faces[f]).radius; },
         [&](Index f, const auto& use) {
             for (const Index e : complex.face_edges[f]) {
-                const EdgeFaces& at = edges[e];
-                use(at.count == 2 ? at.faces[at.faces[0] == f ? 1 : 0] : kNone, length_of(complex, e));
+                const std::span<const Index> at = faces_at[e];
+                use(at.size() == 2 ? at[at[0] == f ? 1 : 0] : kNone, length_of(complex, e));
             }
         });
     Flags keeps(complex.faces.size());
     for (std::size_t f = 0; f < keeps.size(); ++f) {
         if (found.numbers[f] != kNone) {
             const SurfacePart& part = found.parts[found.numbers[f]];
-            const bool is_large = part.area * part.area * part.area >= part.volume * part.volume;
-            keeps[f] = is_large && part.is_wide(kLeastWidth) ? 1 : 0;
+            const bool is_large = part.area * part.area * part.area >= 4.0 * part.weight * part.weight;
+            keeps[f] = is_large && part.is_wide() ? 1 : 0;
         }
     }
     return keeps;
@@ -185,8 +133,9 @@ Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
 // The faces that belong to walls. Where walls meet, balls grow beyond the thickness of each: where a rib stands on a
 // plate they roll off the two re-entrant edges, which they see at a small angle. Such a face belongs to the wall
 // towards which radii shrink from it; from a face that runs into a convex edge they shrink towards that edge. A
-// watershed of the radius parts both (F. Meyer, "Un algorithme optimal pour la ligne de partage des eaux", 1991).
-// Sheets are flooded first; then walls flood what lies between seams alone.
+// watershed of the radius parts both (F. Meyer, "Un algorithme optimal pour la ligne de partage des eaux", 1991). From
+// a wall balls grow towards junctions: it floods no face that has a smaller ball than its own. Sheets are flooded
+// first; then walls flood what lies between seams alone.
 Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
     const auto count = static_cast<Index>(complex.faces.size());
     const IndexLists at_edge = faces_at_edges(complex);
@@ -221,7 +170,7 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
         for (const Index e : complex.face_edges[f]) {
             for (const Index neighbor : at_edge[e]) {
                 const bool crosses = has_crossed || at_edge[e].size() > 2;
-                const bool enters = wall > 0.0 ? least_radius(neighbor) >= kDescent * wall : !crosses;
+                const bool enters = wall > 0.0 ? least_radius(neighbor) >= (1.0 - kSamplingError) * wall : !crosses;
                 if (is_flooded[neighbor] == 0 && enters) {
                     front.emplace(crosses, std::max(level, radii[neighbor]), neighbor, wall);
                 }
@@ -237,8 +186,9 @@ Flags without_crumbs(const MedialComplex& complex, Flags walls) {
     const std::size_t count = walls.size();
     DisjointSets sheets(count);
     DisjointSets parts(count);  // of sheets
-    for (const auto& [number, faces] : faces_of_edges(complex)) {
-        if (number == 2) {
+    const IndexLists faces_at = faces_at_edges(complex);
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (const std::span<const Index> faces = faces_at[e]; faces.size() == 2) {
             sheets.join(faces[0], faces[1]);
             if (walls[faces[0]] == walls[faces[1]]) {
                 parts.join(faces[0], faces[1]);
@@ -277,7 +227,7 @@ struct Patch {
 
 // The part of a sheet around one of its faces, up to a distance from a place. Single faces at a border may be so small
 // that errors of their corners tilt them.
-Patch patch_around(const MedialComplex& complex, std::span<const EdgeFaces> edges, Index face, const Point& place,
+Patch patch_around(const MedialComplex& complex, const IndexLists& faces_at, Index face, const Point& place,
                    double reach) {
     std::vector<Index> next{face};  // a stack
     std::unordered_set<Index> passed{face};
@@ -289,28 +239,28 @@ Patch patch_around(const MedialComplex& complex, std::span<const EdgeFaces> edge
         next.pop_back();
         const Point part = area_vector(complex, f);
         const double part_area = norm(part);
-        sum = sum + part_area * center_of(complex, f);
+        sum = sum + part_area * center_of_face(complex, f);
         normal = dot(part, normal) < 0.0 ? normal - part : normal + part;
         area += part_area;
         for (const Index e : complex.face_edges[f]) {
-            for (const Index neighbor : edges[e].faces) {
-                if (edges[e].count == 2 && !passed.contains(neighbor) &&
-                    distance(center_of(complex, neighbor), place) < reach) {
+            for (const Index neighbor : faces_at[e]) {
+                if (faces_at[e].size() == 2 && !passed.contains(neighbor) &&
+                    distance(center_of_face(complex, neighbor), place) < reach) {
                     passed.insert(neighbor);
                     next.push_back(neighbor);
                 }
             }
         }
     }
-    return {area > 0.0 ? (1.0 / area) * sum : center_of(complex, face), unit(normal)};
+    return {area > 0.0 ? (1.0 / area) * sum : center_of_face(complex, face), unit(normal)};
 }
 
 std::vector<BorderEdge> border_of(const MedialComplex& complex) {
     std::vector<BorderEdge> border;
-    const std::vector<EdgeFaces> edges = faces_of_edges(complex);
-    for (Index e = 0; e < static_cast<Index>(edges.size()); ++e) {
-        if (edges[e].count == 1) {
-            const Index f = edges[e].faces[0];
+    const IndexLists faces_at = faces_at_edges(complex);
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        if (faces_at[e].size() == 1) {
+            const Index f = faces_at[e].front();
             const std::span<const Index> face = complex.faces[f];
             const auto k =
                 static_cast<std::size_t>(std::ranges::find(complex.face_edges[f], e) - complex.face_edges[f].begin());
@@ -323,8 +273,8 @@ std::vector<BorderEdge> border_of(const MedialComplex& complex) {
             BorderEdge& edge = border[b];
             const auto& [start, end] = edge.ends;
             const Point middle = midpoint(complex.vertices[start], complex.vertices[end]);
-            const Patch patch = patch_around(complex, edges, edge.face, middle,
-                                             kTangentReach * std::max(complex.radii[start], complex.radii[end]));
+            const Patch patch = patch_around(complex, faces_at, edge.face, middle,
+                                             kNearby * std::max(complex.radii[start], complex.radii[end]));
             // Neither along the border nor out of the tangent plane: the centroid of a curved sheet lies beside it.
             const Point sideways = cross(complex.vertices[end] - complex.vertices[start], patch.normal);
             const Point outwards = (dot(sideways, middle - patch.center) < 0.0 ? -1.0 : 1.0) * sideways;
@@ -359,7 +309,6 @@ class SideDirections {
         std::vector<Step> steps{{v, 0.0}};
         std::vector<Index> passed;
         Point sum;
-        double weights = 0.0;
         for (std::size_t i = 0; i < steps.size(); ++i) {
             const Step step = steps[i];
             for (const Index b : at_[step.vertex]) {
@@ -371,11 +320,10 @@ class SideDirections {
                 const double covered = std::min(edge.length, reach - step.way);
                 const double weight = covered * (1.0 - (step.way + 0.5 * covered) / reach);
                 sum = sum + weight * edge.outwards;
-                weights += weight;
                 steps.push_back({edge.ends[edge.ends[0] == step.vertex ? 1 : 0], step.way + edge.length});
             }
         }
-        return norm(sum) > kLeastAgreement * weights ? unit(sum) : Point();
+        return norm(sum) > 0.0 ? unit(sum) : Point();
     }
 
    private:
@@ -397,7 +345,7 @@ void extend(Midsurface& surface, const MedialComplex& complex, const DistanceIns
             }
             const Point direction = directions.of(static_cast<Index>(v));
             if (direction != Point()) {
-                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], kFarthest, distance);
+                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], distance);
                 ends[v] = ends[v] + std::max(way.value_or(0.0), 0.0) * direction;
             }
         },
@@ -493,8 +441,7 @@ void measure_edges(Midsurface& surface) {
     }
 }
 
-// Sheets smaller than a square as wide as a seam's reach, as contractions leave them beside seams, collapse from their
-// border.
+// Sheets smaller than a square of half a radius, as contractions leave them beside seams, collapse from their border.
 MedialComplex without_flaps(const MedialComplex& walls) {
     std::vector<double> areas(static_cast<std::size_t>(walls.sheets));
     std::vector<double> radii(static_cast<std::size_t>(walls.sheets));
@@ -506,7 +453,7 @@ MedialComplex without_flaps(const MedialComplex& walls) {
     Remainder rest(walls);
     const auto is_flap = [&](const ElementaryCollapse& collapse) {
         const Index sheet = collapse.has_face ? walls.face_sheets[collapse.element] : kNone;
-        return sheet == kNone || std::sqrt(areas[sheet]) < kSeamReach * radii[sheet];
+        return sheet == kNone || std::sqrt(areas[sheet]) < kNearby * radii[sheet];
     };
     Collapses collapses(walls, rest, is_flap, [](const ElementaryCollapse&, bool) {});
     collapses.add_all();
@@ -516,11 +463,13 @@ MedialComplex without_flaps(const MedialComplex& walls) {
 
 // The walls of a complex, with whole seams.
 MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
+    // Where four sheets meet there are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7
+    // radii: sheets that cross would stay joined at the ends of their seam.
     MedialComplex walls =
-        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSeamWidth);
-    const auto reaches = each_of<double>(walls.radii, [](double radius) { return kSeamReach * radius; });
+        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSamplingError);
+    const auto reaches = each_of<double>(walls.radii, [](double radius) { return kNearby * radius; });
     walls = without_slivers(with_seams_to_borders(std::move(walls), reaches), kInfinity);
-    return without_flaps(without_short_edges_at_seams(std::move(walls), kSeamWidth));
+    return without_flaps(without_short_edges_at_seams(std::move(walls), kSamplingError));
 }
 
 Midsurface midsurface_of(const MedialComplex& complex, const Solid* solid, const MidsurfaceOptions& options,

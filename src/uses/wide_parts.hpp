@@ -11,16 +11,14 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Of the thickness: narrower parts of sheets are crumbs, and do not tell where a wall is.
-inline constexpr double kLeastWidth = 0.5;
-
 struct SurfacePart {
     double area = 0.0;
-    double volume = 0.0;  ///< area × thickness
+    double weight = 0.0;  ///< area × half the thickness
     double border = 0.0;
 
-    /// A strip of width w and length l has the area w l and a border of about 2 l. \param width in thicknesses
-    bool is_wide(double width) const { return 2.0 * area * area >= width * volume * border; }
+    /// Is it wider than half the thickness of the wall? Narrower parts of sheets are crumbs, and do not tell where a
+    /// wall is. A strip of width w and length l has the area w l and a border of about 2 l.
+    bool is_wide() const { return 2.0 * area * area >= weight * border; }
 };
 
 struct SurfaceParts {
@@ -28,10 +26,10 @@ struct SurfaceParts {
     std::vector<SurfacePart> parts;  ///< by these numbers
 };
 
-/// The connected parts of those faces that count. \param counts #F \param area, thickness of a face
+/// The connected parts of those faces that count. \param counts #F \param area, radius of a face
 /// \param for_each_side calls `use(other, length)` for each side of a face: the only other face there, or `kNone`
-template <class Counts, class Area, class Thickness, class ForEachSide>
-SurfaceParts parts_of_faces(const Counts& counts, const Area& area, const Thickness& thickness,
+template <class Counts, class Area, class Radius, class ForEachSide>
+SurfaceParts parts_of_faces(const Counts& counts, const Area& area, const Radius& radius,
                             const ForEachSide& for_each_side) {
     const auto count = static_cast<Index>(counts.size());
     DisjointSets joined(counts.size());
@@ -51,7 +49,7 @@ SurfaceParts parts_of_faces(const Counts& counts, const Area& area, const Thickn
             result.numbers[f] = joined.find(f);
             SurfacePart& part = result.parts[result.numbers[f]];
             part.area += area(f);
-            part.volume += area(f) * thickness(f);
+            part.weight += area(f) * radius(f);
             for_each_side(f, [&](Index other, double length) { part.border += is_inner(other) ? 0.0 : length; });
         }
     }

@@ -29,9 +29,6 @@ constexpr double kLeastCurve = 0.25;
 constexpr double kLeastAgreement = 0.5;
 // Of the size: how far a vertex moves in one round, so that the mesh around it can follow.
 constexpr double kLongestMove = 0.5;
-// Cosine of the angle between the sides of a triangle on one curve from which on it is a part of the curve.
-constexpr double kFlatEar = -0.8;
-constexpr double kNoEar = -0.99;
 constexpr int kRounds = 12;         // after all vertices are in their places; shapes of triangles settle in about eight
 constexpr int kMostRounds = 60;     // for sizes far below the thickness of walls
 constexpr int kMostDivisions = 12;  // of an edge 4,000 times as long as the size
@@ -326,10 +323,6 @@ class WallRemesher {
         const auto middle = static_cast<Index>(vertices_.size());
         vertices_.push_back(midpoint(vertices_[a], vertices_[b]));
         at_.emplace_back();
-        cut(a, b, middle);
-    }
-
-    void cut(Index a, Index b, Index middle) {
         for (const Index t : triangles_at(a, b)) {
             const auto added = static_cast<Index>(triangles_.size());
             triangles_.push_back(triangles_[t]);
@@ -357,20 +350,11 @@ class WallRemesher {
         if (!sides[0]->is_curve() || !sides[1]->is_curve()) {
             return;
         }
-        if (cosine < kNoEar && is_curve(others[0], others[1])) {  // between curves that are one
-            remove(t);
-            cut(others[0], others[1], v);
-            remove_twins(v);
-        } else if (place_of(spokes) == VertexPlace::kOnCurve && sides[0]->count == 2) {
+        if (place_of(spokes) == VertexPlace::kOnCurve && sides[0]->count == 2) {
             walls_[t] = sides[0]->walls[sides[0]->walls[0] == walls_[t] ? 1 : 0];
-        } else if (place_of(spokes) == VertexPlace::kOnCurve && cosine < kFlatEar) {
+        } else if (place_of(spokes) == VertexPlace::kOnCurve && cosine < -kSameDirection) {
             contract(v, squared_norm(one) < squared_norm(two) ? others[0] : others[1]);
         }
-    }
-
-    bool is_curve(Index a, Index b) const {
-        const std::vector<Index> at = triangles_at(a, b);
-        return at.size() != 2 || walls_[at[0]] != walls_[at[1]];
     }
 
     void contract(Index a, Index b) {

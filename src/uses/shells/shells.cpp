@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <map>
+#include <numbers>
 #include <numeric>
 #include <optional>
 #include <queue>
@@ -34,26 +35,12 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// A ball that touches more than two sides is larger than the wall is thick. Around a seam these are the balls with a
-// contact in a re-entrant edge, which the ball of the seam touches: they are less than its radius away.
-constexpr double kSeamReach = 1.1;  // of the radius at the seam
 // Growth of the radius along the way that a draft angle of 10 degrees has, but hardly the balls in a bend.
 constexpr double kDraft = 0.1;
-// Parts of a wall whose normals differ by less, where they meet, are one: half of a bend that a shell can take.
-constexpr double kBendAngle = 25.0;
-// Of the thickness: a wall is flat if it is as near to its plane. 5 % of it change the stiffness by less than 1 %.
+// Of the thickness: a wall is flat if it is as near to its plane, and even if it is as near to its mean thickness. 5 %
+// of it change the stiffness of a flat wall by less than 1 %.
 constexpr double kFlatness = 0.05;
-constexpr double kEvenness = 0.02;    // of the thickness: half the accuracy of a rolled plate
-constexpr double kEvenPart = 0.95;    // of the area that is so near to the mean
-constexpr double kNormalReach = 0.5;  // of the thickness: normals of curved walls are means over it
-constexpr double kRimReach = 2.0;     // of the radius: a rim of 45 degrees is at √2
-constexpr double kRimDepth = 0.2;     // of the radius: so far inside the nearest side of the solid is the rim
-constexpr double kLeastFacing = 0.4;  // cosine of the steepest slope of a rim, which is no side of the wall then
-constexpr double kRimGap = 0.75;      // of the thickness: the rim goes on so far away
-constexpr double kRimBend = 0.9;      // cosine of the angle from which on there is a corner between two rims
-constexpr double kLeastRim = 0.5;     // of the thickness: shorter rims are errors of single normals
-// Least eigenvalue for planes to tell a place: two that differ by 18 degrees.
-constexpr double kLeastSlant = 0.05;
+constexpr double kRimDepth = 0.2;  // of the radius: so far inside the nearest side of the solid is the rim
 
 using TriangleFlags = std::vector<std::uint8_t>;
 
@@ -87,7 +74,9 @@ struct Neighbourhood {
         : sides(sides_of_edges(mesh.triangles, mesh.vertices.size())), opposites(opposite_sides(sides)) {}
 };
 
-// Vertices so near to a seam that their balls may be larger than the wall is thick.
+// Vertices so near to a seam that their balls may be larger than the wall is thick: balls that touch more than two
+// sides. Around a seam these are the balls with a contact in a re-entrant edge, which the ball of the seam touches, so
+// that they are less than its radius away.
 TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbours) {
     const std::vector<Point>& places = surface.mesh.vertices;
     std::vector<std::array<Index, 2>> edges;
@@ -106,7 +95,7 @@ TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbo
     std::vector<Index> last(places.size(), kNone);  // seam vertex from which it was reached
     std::vector<Index> next;
     for (const Index start : seam) {
-        const double reach = kSeamReach * 0.5 * surface.thickness[start];
+        const double reach = (1.0 + kSamplingError) * 0.5 * surface.thickness[start];
         next = {start};
         last[start] = start;
         while (!next.empty()) {
@@ -124,13 +113,14 @@ TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbo
     return is_near;
 }
 
-// Parts of these triangles that hang together and are wide enough: the part of each triangle, or `kNone`.
-std::vector<Index> wide_parts(const Midsurface& surface, const Neighbourhood& neighbours, const TriangleFlags& counts,
-                              double least_width) {
+// Parts of these triangles that hang together, and are wide enough if they have to: the part of each triangle, or
+// `kNone`.
+std::vector<Index> parts_in(const Midsurface& surface, const Neighbourhood& neighbours, const TriangleFlags& counts,
+                            bool are_wide) {
     const TriangleMesh& mesh = surface.mesh;
     SurfaceParts found = parts_of_faces(
         counts, [&](Index t) { return triangle_area(mesh, mesh.triangles[t]); },
-        [&](Index t) { return thickness_of(surface, t); },
+        [&](Index t) { return 0.5 * thickness_of(surface, t); },
         [&](Index t, const auto& use) {
             for (Index k = 0; k < 3; ++k) {
                 const Index side = neighbours.opposites[3 * t + k];
@@ -140,7 +130,7 @@ std::vector<Index> wide_parts(const Midsurface& surface, const Neighbourhood& ne
             }
         });
     for (Index& part : found.numbers) {
-        part = part != kNone && found.parts[part].is_wide(least_width) ? part : kNone;
+        part = part != kNone && (!are_wide || found.parts[part].is_wide()) ? part : kNone;
     }
     return found.numbers;
 }
@@ -162,7 +152,7 @@ std::vector<Index> known_parts(const Midsurface& surface, const Neighbourhood& n
             const bool is_asked = is_done[surface.triangle_sheets[t]] == 0;
             counts[t] = is_asked && std::ranges::all_of(surface.mesh.triangles[t], is_known) ? 1 : 0;
         }
-        const std::vector<Index> found = wide_parts(surface, neighbours, counts, level < 2 ? kLeastWidth : 0.0);
+        const std::vector<Index> found = parts_in(surface, neighbours, counts, level < 2);
         for (std::size_t t = 0; t < parts.size(); ++t) {
             if (found[t] != kNone) {
                 parts[t] = found[t];
@@ -228,7 +218,7 @@ std::vector<Index> walls_of(const TriangleMesh& mesh, const Neighbourhood& neigh
     }
     DisjointSets walls(mesh.triangles.size());
     for (const auto& [pair, meeting] : meetings) {
-        if (meeting.agreement > cosine_of_degrees(kBendAngle) * meeting.length) {
+        if (meeting.agreement > kSameDirection * meeting.length) {
             walls.join(pair[0], pair[1]);
         }
     }
@@ -260,14 +250,11 @@ class WallMiddle {
         thickness_ = volume / area;
         origin_ = (1.0 / area) * sum;
         find_plane(mesh);
-        double even = 0.0;
-        for (const Index t : triangles) {
-            const bool is_even = std::ranges::all_of(surface.mesh.triangles[t], [&](Index v) {
-                return std::abs(surface.thickness[v] - thickness_) <= kEvenness * thickness_;
+        is_even_ = std::ranges::all_of(mesh.triangles, [&](const std::array<Index, 3>& triangle) {
+            return std::ranges::all_of(triangle, [&](Index v) {
+                return std::abs(surface.thickness[v] - thickness_) <= kFlatness * thickness_;
             });
-            even += is_even ? triangle_area(surface.mesh, surface.mesh.triangles[t]) : 0.0;
-        }
-        is_even_ = even >= kEvenPart * area;
+        });
         if (!is_flat_ || !is_even_) {
             bvh_ = build_bvh(std::move(mesh));
             bounds_ = triangle_bounds(*bvh_);
@@ -317,7 +304,7 @@ class WallMiddle {
         });
     }
 
-    // Means over the triangles around: those of single small ones are noisy.
+    // Means over the triangles up to a radius away: those of single small ones are noisy.
     void find_normals() {
         const TriangleMesh& mesh = bvh_->mesh;
         normals_.resize(mesh.triangles.size());
@@ -326,7 +313,7 @@ class WallMiddle {
             [&](std::size_t t) {
                 const Point center = centroid_of(mesh, t);
                 const Point own = area_vector_of(mesh, t);
-                const double reach = kNormalReach * thickness_;
+                const double reach = 0.5 * thickness_;
                 Box box;
                 box.extend(center - Point{reach, reach, reach});
                 box.extend(center + Point{reach, reach, reach});
@@ -369,7 +356,7 @@ struct RimSample {
     Index wall = kNone;
     Point base;  // in the middle of the edge
     double length = 0.0;
-    double thickness = 0.0;
+    double radius = 0.0;  // of the wall
     Point place;
     Point normal;
 };
@@ -390,20 +377,19 @@ std::vector<RimSample> rim_samples(const TriangleMesh& mesh, const std::vector<I
             const Topside middle = middles[sample.wall].at(sample.base);
             const Point from = sample.base - dot(sample.base - middle.place, middle.normal) * middle.normal;
             const Point direction = unit(cross(b - a, middle.normal));
-            sample.thickness = middle.thickness;
-            const double radius = 0.5 * middle.thickness;
-            const std::optional<double> way = way_to_boundary(from, direction, radius, kRimReach, distance_inside);
+            sample.radius = 0.5 * middle.thickness;
+            const std::optional<double> way = way_to_boundary(from, direction, sample.radius, distance_inside);
             if (!way) {
                 return;
             }
             sample.place = from + *way * direction;
-            const Point inside = sample.place - kRimDepth * radius * direction;
-            const double step = 0.25 * kRimDepth * radius;
+            const Point inside = sample.place - kRimDepth * sample.radius * direction;
+            const double step = 0.25 * kRimDepth * sample.radius;
             const auto slope = [&](const Point& axis) {
                 return distance_inside(inside - step * axis) - distance_inside(inside + step * axis);
             };
             sample.normal = unit({slope({1.0, 0.0, 0.0}), slope({0.0, 1.0, 0.0}), slope({0.0, 0.0, 1.0})});
-            if (dot(sample.normal, direction) >= kLeastFacing) {
+            if (dot(sample.normal, direction) > 0.0) {
                 out.push_back(sample);
             }
         },
@@ -459,7 +445,8 @@ class Rims {
         }
     };
 
-    // Rims go on where normals differ little; what is too short for one is none.
+    // Rims go on up to a thickness away where normals differ little; what is shorter than a radius is an error of
+    // single normals.
     void label() {
         labels_.assign(samples_.size(), kNone);
         if (samples_.empty()) {
@@ -470,9 +457,10 @@ class Rims {
         DisjointSets rims(samples_.size());
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const RimSample& sample = samples_[i];
-            for_each_point_near(tree, sample.place, kRimGap * sample.thickness, [&](Index position, double) {
+            for_each_point_near(tree, sample.place, 2.0 * sample.radius, [&](Index position, double) {
                 const Index other = tree.order[position];
-                if (samples_[other].wall == sample.wall && dot(samples_[other].normal, sample.normal) > kRimBend) {
+                if (samples_[other].wall == sample.wall &&
+                    dot(samples_[other].normal, sample.normal) > kSameDirection) {
                     rims.join(static_cast<Index>(i), other);
                 }
             });
@@ -484,7 +472,7 @@ class Rims {
         std::map<Index, Index> numbers;
         for (std::size_t i = 0; i < samples_.size(); ++i) {
             const Index rim = rims.find(static_cast<Index>(i));
-            if (lengths[rim] >= kLeastRim * samples_[i].thickness) {
+            if (lengths[rim] >= samples_[i].radius) {
                 labels_[i] = numbers.try_emplace(rim, static_cast<Index>(numbers.size())).first->second;
             }
         }
@@ -503,7 +491,8 @@ struct Plane {
     Point normal;
 };
 
-// The nearest point that lies on all planes, as far as these differ in direction; no farther than `most` away.
+// The nearest point that lies on all planes, as far as these differ in direction, which the eigenvalues tell: 1 -
+// cosine of two planes. No farther than `most` away.
 Point on_planes(const Point& p, std::span<const Plane> planes, double most) {
     Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -515,7 +504,7 @@ Point on_planes(const Point& p, std::span<const Plane> planes, double most) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(squares);
     Eigen::Vector3d step = Eigen::Vector3d::Zero();
     for (int k = 0; k < 3; ++k) {
-        if (eigen.eigenvalues()[k] > kLeastSlant) {
+        if (eigen.eigenvalues()[k] > 1.0 - kSameDirection) {
             const Eigen::Vector3d axis = eigen.eigenvectors().col(k);
             step += axis.dot(sum) / eigen.eigenvalues()[k] * axis;
         }
@@ -602,9 +591,8 @@ ShellMesh shells_of(const WallMesh& walls, const std::vector<WallMiddle>& middle
         sort_unique(at);
         const Point middle = shapes.place(midpoint(a, b), at, rims);
         // More than the height of an arc of 90 degrees is an error, and would fold the element.
-        constexpr double kHighest = 0.2;
-        shells.middles.push_back(distance(middle, midpoint(a, b)) <= kHighest * distance(a, b) ? middle
-                                                                                               : midpoint(a, b));
+        const double highest = 0.5 * (std::numbers::sqrt2 - 1.0) * distance(a, b);
+        shells.middles.push_back(distance(middle, midpoint(a, b)) <= highest ? middle : midpoint(a, b));
     }
     measure(shells, neighbours);
     return shells;
