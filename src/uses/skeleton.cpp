@@ -35,20 +35,17 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSkeletonStage = "skeleton";
-constexpr double kDefaultSpacing = 0.01;      // of the diagonal
-constexpr double kSheetFactor = 0.5;          // of the half width of a sheet, see `SkeletonOptions::significance`
-constexpr double kWideFactor = 2.0;           // of the radius: half the width of a wide sheet
-constexpr double kLastSheetFactor = 0.55;     // the same for the curve that burns last; 0.41 in a square
-constexpr double kLeastRise = 0.35;           // of the erosion thickness along a branch; 0.29 in a corner of 90°
-constexpr double kLeastLimbRise = 0.45;       // the same at the end of a limb; 0.42 in a corner of a box
-constexpr double kMissedRidge = 1.1;          // of what the ends of an edge tell: a ridge is inside; at 1.3 curves wave
-constexpr double kLeastExcess = 0.1;          // of the radius of the fire at its parent: a shorter end is a rough rim
-constexpr double kHairFactor = 0.05;          // the same for curves that were none of sheets
-constexpr double kLeastBlend = 0.25;          // the same where no sheet is wide: limbs part there, as those of a V
-constexpr double kJunctionFactor = 0.5;       // of the smaller radius: junctions that are closer are one
-constexpr double kWindowFactor = 1.5;         // of the fire's disc: half the window of the smoothing
-constexpr double kWindowEdges = 4.0;          // of the mean length of edges: the least one
-constexpr double kLeastSmoothedRadius = 0.5;  // of the radius before, that smoothing must leave
+constexpr double kDefaultSpacing = 0.01;  // of the diagonal
+constexpr double kSheetFactor = 0.55;     // of the half width of a sheet that a curve sticks out of; 0.41 in a square
+constexpr double kWideFactor = 2.0;       // of the radius: half the width of a wide sheet
+constexpr double kLeastRise = 0.35;       // of the erosion thickness along a branch; 0.29 in a corner of 90°
+constexpr double kLeastLimbRise = 0.45;   // the same at the end of a limb; 0.42 in a corner of a box
+constexpr double kMissedRidge = 1.1;      // of what the ends of an edge tell: a ridge is inside; at 1.3 curves wave
+constexpr double kHairFactor = 0.05;      // of the radius of the fire at its parent: what is shorter is a hair
+constexpr double kLeastBlend = 0.25;      // of the same where no sheet is wide: limbs part there, as those of a V
+constexpr double kDeep = 0.5;             // of the radius: how far from the middle of a ball is still deep in it
+constexpr double kWindowFactor = 1.5;     // of the fire's disc: half the window of the smoothing
+constexpr double kWindowEdges = 4.0;      // of the mean length of edges: the least one
 
 // A complex with the times of the fire in its sheets.
 struct Burnt {
@@ -116,7 +113,7 @@ double thickness_at(const Burnt& burnt, const BurntEdge& edge, Index tip) {
 bool tells_how_it_lies(const Burnt& burnt, const BurntEdge& last, Index tip, double significance) {
     const double path = burnt.vertex_paths[last.to];
     return path > kWideFactor * significance * burnt.radius(last.to) &&
-           thickness_at(burnt, last, tip) > kLastSheetFactor * path;
+           thickness_at(burnt, last, tip) > kSheetFactor * path;
 }
 
 using BurntCurve = std::vector<Index>;
@@ -282,8 +279,7 @@ double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain
         const Index v = seen[i];
         const double way = distance(complex.vertices[tip], complex.vertices[v]);
         const double excess = way + burnt.vertex_times[tip] - burnt.vertex_times[v];
-        const double time = burnt.vertex_times[v];
-        const double part = std::max(kLeastExcess * time, kLeastBlend * std::min(time, kWideFactor * burnt.radius(v)));
+        const double part = kLeastBlend * std::min(burnt.vertex_times[v], kWideFactor * burnt.radius(v));
         least = std::min(least, excess - significance * (burnt.radius(tip) + part));
         for (const Index e : walk.edges_at(v)) {
             const Index next = other_end(complex.edges[e], v);
@@ -531,7 +527,7 @@ class Assembly {
             const Index b = chains_[c].back();
             const double length = distance(burnt_.complex.vertices[a], burnt_.complex.vertices[b]);
             if (walk_.is_junction(a) && walk_.is_junction(b) &&
-                length < kJunctionFactor * std::min(burnt_.radius(a), burnt_.radius(b))) {
+                length < kDeep * std::min(burnt_.radius(a), burnt_.radius(b))) {
                 short_chains.emplace_back(length, c);
             }
         }
@@ -684,7 +680,7 @@ class Assembly {
             [&](std::size_t n) {
                 const auto& [target, source] = places_[n];
                 const Point& start = burnt_.complex.vertices[source];
-                const double least = kLeastSmoothedRadius * burnt_.complex.radii[source];
+                const double least = (1.0 - kDeep) * burnt_.complex.radii[source];
                 for (double part = 1.0; part > 0.1; part *= 0.5) {
                     const Point p = start + part * (target - start);
                     if (const auto radius = radius_at_(p); radius && *radius >= least) {
