@@ -708,7 +708,6 @@ Part part_in(std::span<const Ball> candidates, std::span<const Point> points, st
 // not even on their other side. As they grow by the error in the end, the planes are that far away in the search.
 FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point> points, const Solid& solid,
                         FewBallsOptions options, const Execution& execution) {
-    constexpr double kLeast = 1e-4;  // of the diagonal: with a smaller margin the planes are taken as they are
     if (options.clip.empty()) {
         return search_and_finish(candidates, points, solid, options, {}, execution);
     }
@@ -729,7 +728,7 @@ FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point>
             margin, search_and_finish(whole.candidates, whole.points, part, greedy, {}, execution).statistics.error);
     }
     Part part = whole;
-    for (; margin > 0.0; margin = margin > kLeast * solid.bounds().diagonal() ? 0.5 * margin : 0.0) {
+    for (; margin > 0.0; margin = margin > kFileRounding * solid.bounds().diagonal() ? 0.5 * margin : 0.0) {
         part = part_in(candidates, points, options.clip, margin);
         if (!part.candidates.empty() && !part.points.empty()) {
             break;

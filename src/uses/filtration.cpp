@@ -30,8 +30,7 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kFiltrationStage = "filtration";
-constexpr double kBallsPart = 0.9;  // of the time
-constexpr int kClosedRings = 2;     // of faces around a vertex
+constexpr int kClosedRings = 2;  // of faces around a vertex
 constexpr double kPlateauLoss = 0.02;
 constexpr double kLargestPlateauScale = 2.0;
 
@@ -225,7 +224,7 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         result.complex = std::move(complex);
         result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_at_vertices(result.complex), options);
-        report(execution, kFiltrationStage, kBallsPart);
+        report(execution, kFiltrationStage, 0.9);
         collapse_by_scale(result, closed(result.complex, result.ball_scales));
         report(execution, kFiltrationStage, 1.0);
         return result;

@@ -24,8 +24,7 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // How far the boundary is from the middle of an edge, in lengths of the edge, for this to be the bulge of an arc: that
-// of a half circle, and that of a cylinder with 39 edges around, whose volume 0.4 % are missing to.
-constexpr double kMostBulge = 0.5;
+// of a cylinder with 39 edges around, whose volume 0.4 % are missing to.
 constexpr double kLeastBulge = 0.02;
 
 constexpr std::size_t kMostTriangles = 100'000'000;
@@ -247,14 +246,13 @@ TriangleMesh with_bulging_edges(TriangleMesh mesh, const Solid& solid, const Exe
         for (std::size_t i = 0; i < edges.size(); ++i) {
             const auto [a, b] = edges[i];
             points[i] = midpoint(mesh.vertices[a], mesh.vertices[b]);
-            bounds[i] = kMostBulge * distance(mesh.vertices[a], mesh.vertices[b]);
+            bounds[i] = 0.5 * distance(mesh.vertices[a], mesh.vertices[b]);  // the bulge of a half circle
         }
         std::vector<std::optional<Point>> nearest(edges.size());
         solid.nearest(points, bounds, nearest);
         std::size_t kept = 0;
         for (std::size_t i = 0; i < edges.size(); ++i) {
-            const double least = kLeastBulge / kMostBulge * bounds[i];
-            if (nearest[i] && distance(*nearest[i], points[i]) > least) {
+            if (nearest[i] && distance(*nearest[i], points[i]) > 2.0 * kLeastBulge * bounds[i]) {
                 edges[kept] = edges[i];
                 // On average over an arc a parabola lies two thirds of its height above the chord, two segments half.
                 points[kept++] = points[i] + 4.0 / 3.0 * (*nearest[i] - points[i]);

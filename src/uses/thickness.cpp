@@ -40,9 +40,6 @@ constexpr std::string_view kThicknessStage = "thickness";
 // m sqrt(2 kTouching).
 constexpr double kTouching = 2e-5;
 
-// How much smaller than the largest ball one may be that counts as the largest in an image, in spacings of the grid.
-constexpr double kImageTolerance = 0.005;
-
 // Of the diagonal: by how much all balls are larger where it is asked by which factor they must grow. On the tip of a
 // knife the balls are points, which no factor makes larger.
 constexpr double kInflation = 1e-4;
@@ -268,12 +265,11 @@ struct SlabBound {
     double most = 0.0;
 };
 
-// Radii at the points of a grid where a mask is not 0: of the largest ball that contains a point, or of one that is
-// smaller by up to a tolerance. Blocks are halved, and with them the slabs that may have that ball become fewer.
+// Radii at the points of a grid where a mask is not 0: of the largest ball that contains a point. Blocks are halved,
+// and with them the slabs that may have that ball become fewer.
 class BallPainter {
    public:
-    BallPainter(const ImageView& mask, double tolerance, std::vector<float>& radii)
-        : mask_(mask), tolerance_(tolerance), radii_(radii) {}
+    BallPainter(const ImageView& mask, std::vector<float>& radii) : mask_(mask), radii_(radii) {}
 
     // Radii that are larger already stay.
     void paint(const SlabTree& tree, double inflation, const Block& block) {
@@ -326,7 +322,7 @@ class BallPainter {
         double least = *known;  // all points of the block lie in a ball as large
         std::vector<SlabBound> candidates;
         for (const SlabBound& candidate : given) {
-            if (candidate.most <= least + tolerance_) {
+            if (candidate.most <= least) {
                 break;
             }
             const double nearest = least_distance_bound(candidate.slab, around.center);
@@ -334,7 +330,7 @@ class BallPainter {
                 continue;
             }
             const auto most = largest_ball(inflated(candidate.slab, around.radius), around.center);
-            if (!most || most->radius - around.radius <= least + tolerance_) {
+            if (!most || most->radius - around.radius <= least) {
                 continue;
             }
             candidates.push_back({candidate.slab, most->radius - around.radius});
@@ -344,7 +340,7 @@ class BallPainter {
                 }
             }
         }
-        std::erase_if(candidates, [&](const SlabBound& c) { return c.most <= least + tolerance_; });
+        std::erase_if(candidates, [&](const SlabBound& c) { return c.most <= least; });
         std::ranges::stable_sort(candidates, std::greater(), &SlabBound::most);
         if (block.is_small() || candidates.empty()) {
             paint_points(candidates, block, least);
@@ -359,7 +355,7 @@ class BallPainter {
         for_each_point(block, [&](std::size_t n, const Point& p) {
             double largest = std::max(least, static_cast<double>(radii_[n]));
             for (const SlabBound& candidate : candidates) {
-                if (candidate.most <= largest + tolerance_) {
+                if (candidate.most <= largest) {
                     break;
                 }
                 if (least_distance_bound(candidate.slab, p) > kRelativeRounding * candidate.most) {
@@ -390,7 +386,6 @@ class BallPainter {
     }
 
     const ImageView& mask_;
-    double tolerance_;
     std::vector<float>& radii_;
 };
 
@@ -435,8 +430,8 @@ class ThicknessData {
     }
 
     /// \param radii of the grid, which get the radii of balls where the mask is not 0
-    void paint(const ImageView& mask, const Block& block, double tolerance, std::vector<float>& radii) const {
-        BallPainter painter(mask, tolerance, radii);
+    void paint(const ImageView& mask, const Block& block, std::vector<float>& radii) const {
+        BallPainter painter(mask, radii);
         const SlabTree& tree = between_ ? *between_ : all_;
         painter.paint(tree, inflation_, block);
         painter.for_each_point(block, [&](std::size_t n, const Point& p) {
@@ -516,7 +511,6 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
     return in_arena(execution, [&] {
         report(execution, kThicknessStage, 0.0);
         Image image{mask.sizes, mask.origin, mask.steps, std::vector<float>(mask.values.size(), 0.0F)};
-        const double spacing = std::min({norm(mask.steps[0]), norm(mask.steps[1]), norm(mask.steps[2])});
         std::array<std::size_t, 3> blocks{};
         std::ranges::transform(mask.sizes, blocks.begin(),
                                [](Index size) { return (size + kGridBlock - 1) / kGridBlock; });
@@ -530,7 +524,7 @@ Image Thickness::image(const ImageView& mask, const Execution& execution) const 
                 for (int axis = 0; axis < 3; ++axis) {
                     block.end[axis] = std::min(mask.sizes[axis], begin[axis] + kGridBlock);
                 }
-                data_->paint(mask, block, kImageTolerance * spacing, image.values);
+                data_->paint(mask, block, image.values);
             },
             std::size_t{8});
         for_each_index(image.values.size(), [&](std::size_t n) { image.values[n] *= 2.0F; });

@@ -30,8 +30,6 @@ namespace {
 
 constexpr std::string_view kVanishingStage = "vanishing scales";
 constexpr int kMostCuttingRounds = 200;  // of cutting planes, then a ball is kept; five are usual
-constexpr double kCutSlack = 0.05;  // of the radius: which of several balls cuts off that much more does not matter
-
 // A convex polyhedron around the origin, a box from which half-spaces are cut: the part of a power diagram that belongs
 // to B. Of the planes through a corner it knows three; corners that share two of them have an edge.
 class Cell {
@@ -185,10 +183,9 @@ class LargerBalls {
         return radius > own || (radius == own && other < ball_);
     }
 
-    // One that, times the scale, covers a point: hardly any covers it deeper. `kNone` if none does.
+    // The one that, times the scale, covers a point deepest. `kNone` if none does.
     Index covering(const Point& p, double scale) const {
         const FramedPoint framed(tree_, p);
-        const double slack = kCutSlack * scale * balls_[ball_].radius;
         const auto in_frame = [&](double distance) {
             const auto framed_distance = static_cast<float>(distance * tree_.scale);
             return framed_distance + BoxTree::kPadding * (1.0F + std::abs(framed_distance));
@@ -212,7 +209,7 @@ class LargerBalls {
                 }
             }
             if (found.ball != kNone) {
-                best = in_frame(found.distance - slack);
+                best = in_frame(found.distance);
             }
         });
         return found.ball;
