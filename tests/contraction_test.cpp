@@ -260,6 +260,44 @@ TEST(Contraction, CutsAFlatTriangleBetweenThreeSeamsWhoseSidesAreTooLong) {
     EXPECT_EQ(result.vertices.size(), vertices.size());
 }
 
+TEST(Contraction, CutsAFlatTriangleWhoseSidesHaveANeighborInCommon) {
+    // Faces at the long side and at one of the others meet in a vertex beside the triangle.
+    const MedialComplex complex = with_marks(complex_by_hand(
+        {{0, 0, 0}, {3, 0, 0}, {1.4, 1e-4, 0}, {1, 0, 1}, {1.5, -1, -1}, {2, 1, 1}, {2, 1, -1}, {0.7, 1, -1}},
+        {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {0, 1, 4}, {1, 2, 5}, {1, 2, 6}, {0, 2, 7}}));
+    ASSERT_EQ(complex.sheets, 6);
+    const MedialComplex result = without_slivers(complex, 0.1);
+    ASSERT_NO_FATAL_FAILURE(expect_well_formed(result));
+    EXPECT_EQ(homology(result), homology(complex));
+    EXPECT_EQ(result.sheets, 5);
+}
+
+TEST(Contraction, DrawsCrumbsTogetherHoweverSmallTheirBalls) {
+    // As wide as half a tolerance, between three seams, each with two more sheets.
+    std::vector<Point> vertices{{0, 0, 0}, {0.05, 0, 0}, {0.02, 0.05, 0}};
+    std::vector<std::vector<Index>> faces{{0, 1, 2}};
+    for (const auto& [p, q] : {std::pair(0, 1), std::pair(1, 2), std::pair(2, 0)}) {
+        for (const double z : {-1.0, 1.0}) {
+            const auto next = static_cast<Index>(vertices.size());
+            const Point side = 20.0 * (vertices[q] - vertices[p]);
+            const Point middle = midpoint(vertices[p], vertices[q]);
+            const Point out = middle + 40.0 * (middle - Point{0.023, 0.017, 0.0}) + Point{0, 0, z};
+            vertices.insert(vertices.end(), {out + side, out - side});
+            faces.push_back({p, q, next, next + 1});
+        }
+    }
+    MedialComplex complex = complex_by_hand(vertices, faces);
+    ASSERT_EQ(complex.sheets, 7);
+    for (const double radius : {1.0, 0.05, 0.0}) {
+        SCOPED_TRACE(radius);
+        std::ranges::fill(complex.radii, radius);
+        const MedialComplex result = without_slivers(complex, 0.1);
+        ASSERT_NO_FATAL_FAILURE(expect_well_formed(result));
+        EXPECT_EQ(homology(result), homology(complex));
+        EXPECT_EQ(result.sheets, 6);
+    }
+}
+
 TEST(Contraction, BringsSeamsToTheBorderOfASheetThatIsFoldedAlongThem) {
     // A seam of three sheets, two of which go on around its end up to a vertex of the border.
     const auto star = [](double gap, double fold) {

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <iterator>
 #include <limits>
+#include <numbers>
 #include <span>
 #include <unordered_map>
 #include <utility>
@@ -59,9 +60,9 @@ bool has_room_for(double diameter, const MedialComplex& complex, std::span<const
     });
 }
 
-// Sheets that are narrow in the mean, and wide nowhere: in a corner where bars meet is one that is three times as wide
-// in its middle as in the mean along its jagged outline. The smallest first, so that the numbers of sheets do not
-// matter.
+// Crumbs, and sheets that are narrow in the mean, and wide nowhere: in a corner where bars meet is one that is three
+// times as wide in its middle as in the mean along its jagged outline. The smallest first, so that the numbers of
+// sheets do not matter.
 std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
     const IndexLists faces_of = faces_of_sheets(complex);
     std::vector<std::uint8_t> is_outer(complex.edges.size());
@@ -88,7 +89,11 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
                 }
             }
         }
-        if (2.0 * area < most && !has_room_for(kMostRoom * tolerance, complex, faces_of[sheet], outline)) {
+        // What is smaller than such a disc is a crumb, whatever its radii: in an apex they are small.
+        const double room = kMostRoom * tolerance;
+        if (area < 0.25 * std::numbers::pi * room * room) {
+            slivers.push_back({area, sheet, kMostWidth * tolerance});
+        } else if (2.0 * area < most && !has_room_for(room, complex, faces_of[sheet], outline)) {
             slivers.push_back({area, sheet, most / perimeter});
         }
     }
@@ -512,6 +517,58 @@ MedialComplex contracted(MedialComplex complex, const std::vector<Sliver>& slive
     return std::move(contraction).result();
 }
 
+// Halves the edges that lead away from slivers and cuts the faces there at their centers. Then no two vertices of a
+// sliver have a neighbor in common beside it, which would stand in the way of contractions.
+MedialComplex with_room_around(const std::vector<Sliver>& slivers, const MedialComplex& complex) {
+    Flags is_sliver(static_cast<std::size_t>(complex.sheets));
+    std::ranges::for_each(slivers, [&](const Sliver& sliver) { is_sliver[sliver.sheet] = 1; });
+    const auto is_in_sliver = [&](std::size_t f) { return is_sliver[complex.face_sheets[f]] != 0; };
+    const Flags is_at_sliver = vertices_of_slivers(slivers, complex);
+    Flags is_side(complex.edges.size());
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index e : is_in_sliver(f) ? complex.face_edges[f] : std::span<const Index>()) {
+            is_side[e] = 1;
+        }
+    }
+    const std::vector<Index> faces_at = face_counts(complex);
+    MedialComplex result = vertices_of(complex);
+    std::vector<Index> middles(complex.edges.size(), kNone);
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        const auto& [a, b] = complex.edges[e];
+        if (is_side[e] == 0 && faces_at[e] > 0 && (is_at_sliver[a] != 0 || is_at_sliver[b] != 0)) {
+            middles[e] = add_vertex(
+                result,
+                {midpoint(complex.vertices[a], complex.vertices[b]), 0.5 * (complex.radii[a] + complex.radii[b])},
+                origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
+        }
+    }
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        const FaceValues values = values_of(complex, static_cast<Index>(f));
+        const std::span<const Index> corners = complex.faces[f];
+        if (is_in_sliver(f) || std::ranges::none_of(corners, [&](Index v) { return is_at_sliver[v] != 0; })) {
+            add_face(result, corners, values);
+            continue;
+        }
+        std::vector<Index> around;
+        double radius = 0.0;
+        for (std::size_t k = 0; k < corners.size(); ++k) {
+            radius += complex.radii[corners[k]] / static_cast<double>(corners.size());
+            around.push_back(corners[k]);
+            if (const Index middle = middles[complex.face_edges[f][k]]; middle != kNone) {
+                around.push_back(middle);
+            }
+        }
+        const Index center =
+            add_vertex(result, {center_of_face(complex, static_cast<Index>(f)), radius}, linear_vertex(radius));
+        for (std::size_t k = 0; k < around.size(); ++k) {
+            add_face(result, std::array{center, around[k], around[(k + 1) % around.size()]}, values);
+        }
+    }
+    build_edges(result, curve_edges(complex));
+    label_sheets(result);
+    return result;
+}
+
 // Where a seam ends and a sheet goes on around it, from one side of it to the other: the shortest edge from there to
 // the border of that sheet.
 std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex, std::span<const double> most,
@@ -573,7 +630,13 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     if (slivers = slivers_of(complex, tolerance); slivers.empty()) {
         return complex;
     }
-    return without_flat_triangles(complex, flat_triangles(complex, slivers));
+    complex = without_flat_triangles(complex, flat_triangles(complex, slivers));
+    if (slivers = slivers_of(complex, tolerance); slivers.empty()) {
+        return complex;
+    }
+    MedialComplex with_room = with_room_around(slivers, complex);
+    with_room = without_flat_triangles(with_room, flat_triangles(with_room, slivers_of(with_room, tolerance)));
+    return slivers_of(with_room, tolerance).size() < slivers.size() ? with_room : complex;
 }
 
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {
