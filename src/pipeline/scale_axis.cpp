@@ -48,7 +48,7 @@ constexpr double kSimplified = 0.9;
 constexpr double kLinearPart = 0.2;
 
 // Of the angle of the filter, where sheets are filtered again once their angles are right: so much do those of a union
-// scatter. With 1 parts of sheets go that are a degree wider than the angle, with 0.75 crumbs stay below feet of ribs.
+// scatter. With 1 parts of sheets go that are a degree wider than the angle, with 0.75 sheets between ribs are lost.
 constexpr double kFirstAngle = 0.93;
 
 // Work of choosing delta in that of a union with the chosen one, for the progress only: with the coarser ones before.
