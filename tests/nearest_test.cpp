@@ -530,6 +530,116 @@ TEST(NearestOfAFunction, DistancesAreThoseOfClosedForms) {
     }
 }
 
+/// A solid of parts: inside where all functions are negative. From inside the nearest face is that of one of them.
+struct OfParts {
+    std::string name;
+    std::vector<ImplicitSolid::Function> functions;
+    std::vector<ImplicitSolid::Function> distances;  ///< of each, signed, right inside
+    double curvature;                                ///< the largest one
+};
+
+std::vector<OfParts> solids_of_parts() {
+    using Function = ImplicitSolid::Function;
+    const auto ball = [](const Point& center, double radius) -> Function {
+        return [=](const Point& p) { return norm(p - center) - radius; };
+    };
+    const auto square_ball = [](double factor, const Point& center, double radius) -> Function {
+        return [=](const Point& p) { return factor * (squared_norm(p - center) - radius * radius); };
+    };
+    const Function cut = [](const Point& p) { return 0.3 - p.x; };
+    const Function base = [](const Point& p) { return -0.6 - p.z; };
+    const Function box = [](const Point& p) {
+        return std::max({std::abs(p.x) - 1.0, std::abs(p.y) - 0.7, std::abs(p.z) - 0.5});
+    };
+    const Point axis = unit(Point{1.0, 2.0, 3.0});
+    const auto from_axis = [=](const Point& p) { return norm(p - dot(p, axis) * axis); };
+    std::vector<OfParts> result;
+    for (const double factor : {1.0, 100.0, 0.01}) {
+        result.push_back({"cut ball", {square_ball(factor, {}, 1.0), cut}, {ball({}, 1.0), cut}, 1.0});
+    }
+    result.push_back(
+        {"cone",
+         {[](const Point& p) { return 10.0 * (std::hypot(p.x, p.y) - 0.5 * (1.0 - p.z)); }, base},
+         {[](const Point& p) { return (std::hypot(p.x, p.y) - 0.5 * (1.0 - p.z)) / std::sqrt(1.25); }, base},
+         1.25});
+    result.push_back(
+        {"cylinder",
+         {[](const Point& p) { return p.x * p.x + p.y * p.y - 1.0; }, [](const Point& p) { return p.z * p.z - 1.0; }},
+         {[](const Point& p) { return std::hypot(p.x, p.y) - 1.0; },
+          [](const Point& p) { return std::abs(p.z) - 1.0; }},
+         1.0});
+    result.push_back({"turned cylinder",
+                      {[=](const Point& p) { return 100.0 * (std::pow(from_axis(p), 2.0) - 0.64); },
+                       [=](const Point& p) { return std::abs(dot(p, axis)) - 0.7; }},
+                      {[=](const Point& p) { return from_axis(p) - 0.8; },
+                       [=](const Point& p) { return std::abs(dot(p, axis)) - 0.7; }},
+                      1.25});
+    result.push_back({"box", {box}, {box}, 0.0});
+    result.push_back({"lens",
+                      {square_ball(1.0, {0.4, 0, 0}, 1.0), square_ball(10.0, {-0.4, 0, 0}, 1.0)},
+                      {ball({0.4, 0, 0}, 1.0), ball({-0.4, 0, 0}, 1.0)},
+                      1.0});
+    const Point corner{1.0, 0.7, 0.5};
+    result.push_back({"box without a ball",
+                      {box, square_ball(-1.0, corner, 0.6)},
+                      {box, [=](const Point& p) { return 0.6 - norm(p - corner); }},
+                      1.0 / 0.6});
+    return result;
+}
+
+TEST(NearestOfAFunction, OfPartsIsOnTheNearerFaceWhateverTheirSlopes) {
+    Random random = announced(73);
+    const auto all = [](const std::vector<ImplicitSolid::Function>& functions) -> ImplicitSolid::Function {
+        return [=](const Point& p) {
+            double most = -kInfinity;
+            for (const ImplicitSolid::Function& function : functions) {
+                most = std::max(most, function(p));
+            }
+            return most;
+        };
+    };
+    const Box bounds = centered_box(1.2, 1.2, 1.2);
+    const double step = bounds.diagonal() / 128;
+    for (const OfParts& parts : solids_of_parts()) {
+        SCOPED_TRACE(parts.name);
+        const auto solid = function_solid(all(parts.functions), {.bounds = bounds});
+        const auto truth = all(parts.distances);
+        std::vector<Point> points;
+        while (points.size() < 4000) {  // most of them within a step of the boundary
+            const Point p = random_point(random, 1.2);
+            const double depth = -truth(p);
+            if (depth > 0.0 && (depth < step || points.size() % 4 == 0)) {
+                points.push_back(p);
+            }
+        }
+        const Truth depth = [&](const Point& p) { return std::abs(truth(p)); };
+        EXPECT_LE(worst_error(*solid, points, depth), parts.curvature * step * step + 1e-9);
+    }
+}
+
+TEST(NearestOfAFunction, OfAUnionIsFoundInItsNotch) {
+    Random random = announced(74);
+    const Box bounds = centered_box(1.2, 1.2, 1.2);
+    const double step = bounds.diagonal() / 128;
+    const Balls balls{{{-0.4, 0.1, 0.0}, 0.7}, {{0.5, 0.0, 0.1}, 0.6}};
+    const auto solid = function_solid(
+        [=](const Point& p) {
+            return std::min(squared_norm(p - balls[0].center) - 0.49,
+                            100.0 * (squared_norm(p - balls[1].center) - 0.36));
+        },
+        {.bounds = bounds});
+    const UnionOfBalls united(balls);
+    std::vector<Point> points;
+    while (points.size() < 2000) {
+        const Point p = random_point(random, 1.2);
+        if (solid->inside(p)) {
+            points.push_back(p);
+        }
+    }
+    const Truth truth = [&](const Point& p) { return united.boundary_near(p).first; };
+    EXPECT_LE(worst_error(*solid, points, truth), step * step / 0.6);
+}
+
 TEST(NearestOfAFunction, ItNeedNotBeSmoothNorADistance) {
     Random random = announced(69);
     const ImplicitSolid::Function function = torus_solid(1.0, 0.4).function();

@@ -506,6 +506,78 @@ TEST(SharpEdges, OfAFunctionWhoseNormalsJump) {
     expect_reached(axis, edges, 1e-6, 0.99);
 }
 
+/// A solid that turns around the z axis, as a function of parts and as a mesh, and the length of its edges.
+struct Turned {
+    std::string name;
+    ImplicitSolid::Function function;
+    std::vector<std::array<double, 2>> curve;  ///< as `revolved` takes it
+    double length;
+};
+
+std::vector<Turned> turned_solids() {
+    constexpr double kTurn = 2.0 * std::numbers::pi;
+    std::vector<Turned> result;
+    const auto square = [](double a) { return a * a; };
+    const double rim = std::sqrt(1.0 - 0.3 * 0.3);
+    std::vector<std::array<double, 2>> cut{{0.0, 0.3}, {rim, 0.3}};
+    for (int i = 1; i < 48; ++i) {
+        const double angle = (1.0 - i / 48.0) * std::acos(0.3);
+        cut.push_back({std::sin(angle), std::cos(angle)});
+    }
+    cut.push_back({0.0, 1.0});
+    for (const double factor : {1.0, 100.0, 0.01}) {
+        result.push_back({"cut ball, factor " + std::to_string(factor),
+                          [=](const Point& p) { return std::max(factor * (squared_norm(p) - 1.0), 0.3 - p.z); }, cut,
+                          kTurn * rim});
+    }
+    result.push_back({"flat cone",
+                      [=](const Point& p) {
+                          return std::max({square(p.x) + square(p.y) - square(1.0 - p.z), -p.z, p.z - 1.0});
+                      },
+                      {{0.0, 0.0}, {1.0, 0.0}, {0.0, 1.0}},
+                      kTurn});
+    result.push_back(
+        {"sharp cone",
+         [](const Point& p) { return std::max(10.0 * (std::hypot(p.x, p.y) - 0.25 * (1.0 - p.z)), -1.0 - p.z); },
+         {{0.0, -1.0}, {0.5, -1.0}, {0.0, 1.0}},
+         0.5 * kTurn});
+    result.push_back(
+        {"cylinder",
+         [=](const Point& p) { return std::max(100.0 * (square(p.x) + square(p.y) - 1.0), square(p.z) - 0.36); },
+         {{0.0, -0.6}, {1.0, -0.6}, {1.0, 0.6}, {0.0, 0.6}},
+         2.0 * kTurn});
+    return result;
+}
+
+void expect_edges_of_functions_of_parts(double delta) {
+    for (const auto& [name, function, curve, length] : turned_solids()) {
+        SCOPED_TRACE(name);
+        const AxisAtScale of_mesh = axis_of(*mesh_solid(revolved(curve, 128)), 1.1, delta);
+        const auto solid = function_solid(function, {.bounds = centered_box(1.2, 1.2, 1.2)});
+        const AxisAtScale axis = axis_of(*solid, 1.1, delta);
+        EXPECT_EQ(axis.complex.sheets, of_mesh.complex.sheets);
+        EXPECT_NEAR(axis.sharp_statistics->length, length, 0.005 * length);
+        // Places of a traced edge are up to four tolerances apart, with straight lines between them; no rim has a
+        // radius below 1/2.
+        const double tolerance = delta * solid->bounds().diagonal();
+        for (const Point& p : zero_balls(axis.complex)) {
+            const double across = std::hypot(p.x, p.y);
+            double least = std::numeric_limits<double>::infinity();
+            for (const auto& [r, z] : curve) {
+                least = std::min(least, std::hypot(across - r, p.z - z));
+            }
+            EXPECT_LE(least, 4.0 * tolerance * tolerance);
+        }
+    }
+}
+
+TEST(SharpEdges, OfFunctionsOfPartsAreReachedWhateverTheirSlopes) {
+    expect_edges_of_functions_of_parts(0.02);
+    expect_edges_of_functions_of_parts(0.01);
+}
+
+TEST(SharpEdgesSweep, OfFunctionsOfPartsAreReachedWhateverTheirSlopes) { expect_edges_of_functions_of_parts(0.005); }
+
 TEST(SharpEdges, RoundAndNoisyShapesHaveNone) {
     const std::uint64_t seed = 1;
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -180,7 +180,7 @@ class FunctionSolid final : public Solid, public NearestPoints {
     void crossings(std::span<const Chord> chords, std::span<std::optional<Point>> points) const override {
         auto inquiries =
             each_of<Inquiry<std::optional<Point>>>(chords, [&](const Chord& chord) { return crossing_of(chord); });
-        answer(inquiries);
+        answer(std::span(inquiries));
         std::ranges::transform(inquiries, points.begin(), [](auto& inquiry) { return inquiry.result(); });
     }
 
@@ -212,7 +212,7 @@ class FunctionSolid final : public Solid, public NearestPoints {
                 inquiries.push_back(foot_of(points[i], *start));
             }
         }
-        answer(inquiries);
+        answer(std::span(inquiries));
         for (std::size_t k = 0; k < asked.size(); ++k) {
             const std::size_t i = asked[k];
             const std::optional<Point>& found = inquiries[k].result();
@@ -226,34 +226,140 @@ class FunctionSolid final : public Solid, public NearestPoints {
     const NetTree& net() const {
         return net_.get([&] {
             const std::vector<SurfaceCell> cells = near_.crossed();
-            return net_tree(lattice_, cells, [&](std::size_t i) { return near_.values[near_.find(cells[i].cell)]; });
+            return net_tree(lattice_, cells, net_of_planes(lattice_, cells, edge_crossings(cells)));
         });
     }
+
+    /// Where the boundary crosses the edges of the lattice from corner 0 of each cell, those with corners on both
+    /// sides.
+    std::vector<std::array<EdgeCrossing, 3>> edge_crossings(const std::vector<SurfaceCell>& cells) const {
+        struct Edge {
+            std::size_t cell;
+            int axis;
+        };
+        std::vector<Edge> edges;
+        for (std::size_t i = 0; i < cells.size(); ++i) {
+            for (int axis = 0; axis < 3; ++axis) {
+                if ((cells[i].inside & 1) != (cells[i].inside >> (1 << axis) & 1)) {
+                    edges.push_back({i, axis});
+                }
+            }
+        }
+        std::vector<std::array<EdgeCrossing, 3>> crossings(cells.size());
+        for_each_index((edges.size() + batch_ - 1) / batch_,
+                       [&](std::size_t part) {
+                           const auto asked =
+                               std::span(edges).subspan(part * batch_, std::min(batch_, edges.size() - part * batch_));
+                           auto inquiries = each_of<Inquiry<EdgeCrossing>>(asked, [&](const Edge& edge) {
+                               const Cell& cell = cells[edge.cell].cell;
+                               const CornerValues& values = near_.values[near_.find(cell)];
+                               return crossing_of_edge(cell, edge.axis, values[0], values[1 << edge.axis]);
+                           });
+                           answer(std::span(inquiries));
+                           for (std::size_t i = 0; i < asked.size(); ++i) {
+                               crossings[asked[i].cell][asked[i].axis] = inquiries[i].result();
+                           }
+                       },
+                       std::size_t{1});
+        return crossings;
+    }
+
+    /// \param before, after the values at the ends of the edge
+    Inquiry<EdgeCrossing> crossing_of_edge(const Cell cell, const int axis, const double before,
+                                           const double after) const {
+        const Point from = corner_of(cell, 0), to = corner_of(cell, 1 << axis);
+        const auto at = [&](double t) { return lattice_.at(from + t * (to - from)); };
+        const Point end_inside = at(before < 0.0 ? 0.0 : 1.0);
+        // Newton's method comes near enough to the zero of a smooth function.
+        double t = before / (before - after);
+        for (int attempt = 0;; ++attempt) {
+            const bool is_last = attempt == 2 || !(t > 0.0 && t < 1.0);
+            if (is_last) {
+                RootFinder root(0.0, 1.0, before, after, rounding_ / step_);
+                while (!root.is_found()) {
+                    root.tell(co_await ValueAt{.place = at(root.place())});
+                }
+                t = root.root();
+            }
+            const Point place = at(t);
+            const double value = co_await ValueAt{.place = place};
+            Slope slope(*this, place, value, end_inside);
+            while (!slope.is_known()) {
+                slope.tell(co_await ValueAt{.place = slope.place()});
+            }
+            const Point way = (-value / squared_norm(slope.result())) * slope.result();
+            // From where the function leaps, the zero is about half of the difference away, however near it is.
+            if (norm(way) <= (is_last ? 0.1 * difference() : kNetAccuracy * step_)) {
+                co_return EdgeCrossing{place + way, unit(slope.result())};
+            }
+            if (is_last) {
+                co_return EdgeCrossing{place, {}};
+            }
+            t -= value / dot(slope.result(), at(1.0) - at(0.0));
+        }
+    }
+
+    double difference() const {
+        return std::min(std::max(kDifference * step_, kDifferenceOfRounding * rounding_), step_);
+    }
+
+    /// The gradient at a place, from differences towards another one: there the function has a slope even where it is
+    /// flat behind an edge. Where it has none, from those on the other side.
+    class Slope {
+       public:
+        Slope(const FunctionSolid& solid, const Point& place, double value, const Point& towards)
+            : bounds_(solid.bounds_), difference_(solid.difference()), at_(place), value_(value), towards_(towards) {
+            next();
+        }
+
+        bool is_known() const { return count_ == 6 || (count_ == 3 && squared_norm(result_) > 0.0); }
+        const Point& result() const { return result_; }
+        /// Where the value is wanted.
+        const Point& place() const { return beside_; }
+        void tell(double there) {
+            double Point::*const axis = kAxes[count_ % 3];
+            result_.*axis = (there - value_) / (beside_.*axis - at_.*axis);
+            ++count_;
+            next();
+        }
+
+       private:
+        static constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
+
+        void next() {
+            double Point::*const axis = kAxes[count_ % 3];
+            beside_ = at_;
+            beside_.*axis += (towards_.*axis < at_.*axis) == (count_ < 3) ? -difference_ : difference_;
+            if (!bounds_.contains(beside_)) {
+                beside_.*axis = 2.0 * at_.*axis - beside_.*axis;
+            }
+        }
+
+        const Box& bounds_;
+        double difference_;
+        Point at_;
+        double value_;
+        Point towards_;
+        int count_ = 0;
+        Point beside_;
+        Point result_;
+    };
 
     /// The point of the boundary nearest to `p`, near `start`. The gradient is that of differences.
     Inquiry<std::optional<Point>> foot_of(const Point p, const Point start) const {
         FootSearch search(p, start, shortest_step(lattice_), rounding_);
-        const double difference = std::min(std::max(kDifference * step_, kDifferenceOfRounding * rounding_), step_);
         while (!search.is_done()) {
-            const Point place = search.place();
-            ValueAt here = value_at(place);
+            ValueAt here = value_at(search.place());
             const double value = co_await here;
-            Point slope;
-            // Differences towards `p`: there the function has a slope even where it is flat behind an edge. Where it
-            // has none, those on the other side.
-            const int most = search.wants_gradient() && !here.is_known ? 6 : 0;
-            for (int k = 0; k < most && !(k == 3 && squared_norm(slope) > 0.0); ++k) {
-                constexpr std::array<double Point::*, 3> kAxes{&Point::x, &Point::y, &Point::z};
-                double Point::*const axis = kAxes[k % 3];
-                Point beside = place;
-                beside.*axis += (p.*axis < place.*axis) == (k < 3) ? -difference : difference;
-                if (!bounds_.contains(beside)) {
-                    beside.*axis = 2.0 * place.*axis - beside.*axis;
+            Point gradient;
+            if (search.wants_gradient() && !here.is_known) {
+                Slope slope(*this, search.place(), value, p);
+                while (!slope.is_known()) {
+                    slope.tell(co_await ValueAt{.place = slope.place()});
                 }
-                const double there = co_await ValueAt{.place = beside};
-                slope.*axis = (there - value) / (beside.*axis - place.*axis);
+                gradient = slope.result();
             }
-            search.tell(value, slope);
+            search.tell(value, gradient);
         }
         co_return search.result();
     }
@@ -309,7 +415,8 @@ class FunctionSolid final : public Solid, public NearestPoints {
             Diagnostic{"function.not_a_number", "the function is not a number at " + text_of(p), "", -1, p});
     }
 
-    void answer(std::span<Inquiry<std::optional<Point>>> inquiries) const {
+    template <class Result>
+    void answer(std::span<Inquiry<Result>> inquiries) const {
         answer_all(inquiries,
                    [&](std::span<const Point> places, std::span<double> values) { evaluate(places, values); });
     }
@@ -325,7 +432,7 @@ class FunctionSolid final : public Solid, public NearestPoints {
                                                     i < std::min(count, (part + 1) * batch_); ++i) {
                                                    inquiries.push_back(start(i));
                                                }
-                                               answer(inquiries);
+                                               answer(std::span(inquiries));
                                                for (Inquiry<std::optional<Point>>& inquiry : inquiries) {
                                                    if (inquiry.result()) {
                                                        out.push_back(*inquiry.result());

@@ -352,7 +352,9 @@ class ImageSolid final : public PointwiseSolid {
    private:
     const NetTree& net() const {
         return net_.get([&] {
-            return net_tree(field_.lattice, cells_, [&](std::size_t i) { return corner_values(cells_[i].cell); });
+            return net_tree(field_.lattice, cells_, net_of_interpolant(field_.lattice, cells_, [&](std::size_t i) {
+                                return corner_values(cells_[i].cell);
+                            }));
         });
     }
 

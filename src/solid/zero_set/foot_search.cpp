@@ -23,7 +23,7 @@ constexpr double kOnPlane = 1e-9;
 // A surface that turns faster than about once in this part of a step has an edge.
 constexpr double kSharp = 1.5;
 
-// A place this part of a step away is very near.
+// By this part of a step a foot may be farther than the start of its search.
 constexpr double kVeryNear = 0.25;
 
 // The first search for a sign change along the normal goes so far, in steps.
@@ -37,8 +37,7 @@ FootSearch::FootSearch(const Point& p, const Point& start, double step, double a
     : p_(p),
       step_(step),
       accuracy_(accuracy),
-      // Very near to the surface `p` is as good a place to start.
-      place_(distance(p, start) < kVeryNear * step ? p : start),
+      place_(start),
       start_(start),
       trust_(step),
       best_{start, distance(p, start) > 0.0 ? unit(start - p) : Point{1, 0, 0}},

@@ -6,14 +6,15 @@
 #include <cmath>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "solid/zero_set/near_points.hpp"
 #include "solid/zero_set/trilinear.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
-// A face this near (fraction of the step) to where the zero crosses its edge needs no vertex there.
-constexpr double kFlat = 0.01;
+// Keeps vertices in the middle of what planes leave open. Edges flatter than 4 degrees are as good as flat.
+constexpr double kStay = 1e-3;
 
 bool is_inside(const SurfaceCell& cell, int corner) { return (cell.inside >> corner & 1) != 0; }
 
@@ -83,20 +84,80 @@ double distance_to_quad(const std::array<Point, 4>& q, const Point& p) {
 
 Point index_of(const Cell& cell) { return {1.0 * cell[0], 1.0 * cell[1], 1.0 * cell[2]}; }
 
+/// The one of the cells, which are sorted.
+std::size_t find(const std::vector<SurfaceCell>& cells, const Cell& cell) {
+    const auto key = [](const SurfaceCell& c) { return std::array{c.cell[2], c.cell[1], c.cell[0]}; };
+    return std::ranges::lower_bound(cells, std::array{cell[2], cell[1], cell[0]}, {}, key) - cells.begin();
+}
+
+/// The place nearest to all planes. \param crossings not empty
+Point meeting_of(const std::vector<EdgeCrossing>& crossings) {
+    const auto count = static_cast<double>(crossings.size());
+    Point middle;
+    for (const EdgeCrossing& crossing : crossings) {
+        middle = middle + (1.0 / count) * crossing.place;
+    }
+    std::array<Point, 3> rows{Point{kStay * count, 0, 0}, {0, kStay * count, 0}, {0, 0, kStay * count}};
+    Point sum;
+    for (const auto& [place, normal] : crossings) {
+        rows[0] = rows[0] + normal.x * normal;
+        rows[1] = rows[1] + normal.y * normal;
+        rows[2] = rows[2] + normal.z * normal;
+        sum = sum + dot(normal, place - middle) * normal;
+    }
+    const Point yz = cross(rows[1], rows[2]), zx = cross(rows[2], rows[0]), xy = cross(rows[0], rows[1]);
+    return middle + (1.0 / dot(rows[0], yz)) * (sum.x * yz + sum.y * zx + sum.z * xy);
+}
+
 }  // namespace
 
-TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
-                         const std::function<CornerValues(std::size_t)>& values) {
-    TriangleMesh mesh;
-    mesh.vertices.resize(cells.size());
+std::vector<NetCell> net_of_interpolant(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                        const std::function<CornerValues(std::size_t)>& values) {
+    std::vector<NetCell> points(cells.size());
     for_each_index(cells.size(), [&](std::size_t i) {
-        mesh.vertices[i] = lattice.at(index_of(cells[i].cell) + vertex_in(cells[i], values(i)));
+        const CornerValues at = values(i);
+        points[i].vertex = lattice.at(index_of(cells[i].cell) + vertex_in(cells[i], at));
+        for (int axis = 0; axis < 3; ++axis) {
+            if (is_inside(cells[i], 0) != is_inside(cells[i], 1 << axis)) {
+                points[i].crossings[axis] =
+                    lattice.at(index_of(cells[i].cell) + (at[0] / (at[0] - at[1 << axis])) * corner_at(1 << axis));
+            }
+        }
     });
-    const auto find = [&](const Cell& cell) {
-        const auto key = [](const SurfaceCell& c) { return std::array{c.cell[2], c.cell[1], c.cell[0]}; };
-        return static_cast<Index>(std::ranges::lower_bound(cells, std::array{cell[2], cell[1], cell[0]}, {}, key) -
-                                  cells.begin());
-    };
+    return points;
+}
+
+std::vector<NetCell> net_of_planes(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                                   const std::vector<std::array<EdgeCrossing, 3>>& crossings) {
+    std::vector<NetCell> points(cells.size());
+    for_each_index(cells.size(), [&](std::size_t i) {
+        std::vector<EdgeCrossing> around;
+        for (int axis = 0; axis < 3; ++axis) {
+            points[i].crossings[axis] = crossings[i][axis].place;
+            for (int corner = 0; corner < 8; ++corner) {
+                const int other = corner | 1 << axis;
+                if (other != corner && is_inside(cells[i], corner) != is_inside(cells[i], other)) {
+                    const auto& [x, y, z] = cells[i].cell;
+                    const Cell of_edge{x + (corner & 1), y + (corner >> 1 & 1), z + (corner >> 2)};
+                    around.push_back(crossings[find(cells, of_edge)][axis]);
+                }
+            }
+        }
+        // Where planes are all but parallel they meet anywhere; a tip that no edge of the lattice meets ends in the
+        // next cell.
+        const Point low = lattice.at(index_of(cells[i].cell) - Point{1, 1, 1});
+        const Point high = lattice.at(index_of(cells[i].cell) + Point{2, 2, 2});
+        const Point p = meeting_of(around);
+        points[i].vertex = {std::clamp(p.x, low.x, high.x), std::clamp(p.y, low.y, high.y),
+                            std::clamp(p.z, low.z, high.z)};
+    });
+    return points;
+}
+
+TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
+                         const std::vector<NetCell>& points) {
+    TriangleMesh mesh;
+    mesh.vertices = each_of<Point>(points, [](const NetCell& cell) { return cell.vertex; });
     const double step = shortest_step(lattice);
     const Part part = collect<Part>(cells.size(), [&](std::size_t i, Part& out) {
         // Each edge belongs to the cell that it is the first one of along its axis.
@@ -108,15 +169,13 @@ TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>&
                 Cell cell = cells[i].cell;
                 cell[(axis + 1) % 3] -= back_x;
                 cell[(axis + 2) % 3] -= back_y;
-                return find(cell);
+                return static_cast<Index>(find(cells, cell));
             };
             const auto a = static_cast<Index>(i);
             const Index b = around(1, 0), c = around(1, 1), d = around(0, 1);
             const std::vector<Point>& p = mesh.vertices;
-            const CornerValues at = values(i);
-            Point crossing{1.0 * (axis == 0), 1.0 * (axis == 1), 1.0 * (axis == 2)};
-            crossing = lattice.at(index_of(cells[i].cell) + (at[0] / (at[0] - at[1 << axis])) * crossing);
-            if (distance_to_quad({p[a], p[b], p[c], p[d]}, crossing) > kFlat * step) {
+            const Point& crossing = points[i].crossings[axis];
+            if (distance_to_quad({p[a], p[b], p[c], p[d]}, crossing) > kNetAccuracy * step) {
                 const auto middle = static_cast<Index>(out.vertices.size());
                 out.vertices.push_back(crossing);
                 for (const auto& [u, v] : {std::array{a, b}, {b, c}, {c, d}, {d, a}}) {
@@ -139,10 +198,9 @@ TriangleMesh surface_net(const Lattice& lattice, const std::vector<SurfaceCell>&
     return mesh;
 }
 
-NetTree net_tree(const Lattice& lattice, const std::vector<SurfaceCell>& cells,
-                 const std::function<CornerValues(std::size_t)>& values) {
+NetTree net_tree(const Lattice& lattice, const std::vector<SurfaceCell>& cells, const std::vector<NetCell>& points) {
     NetTree tree;
-    tree.bvh = build_bvh(surface_net(lattice, cells, values));
+    tree.bvh = build_bvh(surface_net(lattice, cells, points));
     tree.bounds = triangle_bounds(tree.bvh);
     tree.margin = distance(lattice.at({}), lattice.at({1.0, 1.0, 1.0}));
     for (const auto& [x, y, z] : {Point{1, 1, -1}, Point{1, -1, 1}, Point{-1, 1, 1}}) {
