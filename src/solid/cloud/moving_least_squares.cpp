@@ -489,7 +489,7 @@ class MovingLeastSquares final : public PointwiseSolid {
         const Point way = to_plane(p) - middle;
         const double length = norm(way);
         const Point start = middle + (length > 0.5 * spacings_[i] ? 0.5 * spacings_[i] / length : 1.0) * way;
-        FootSearch search(p, start, spacings_[i], kPrecision * radii_[i]);
+        FootSearch search(p, start, spacings_[i], kPrecision * radii_[i], true);
         while (!search.is_done()) {
             const Value here = value(search.place());
             const bool is_beyond_hull = hull_.distance_beyond(search.place()) >= here.height;

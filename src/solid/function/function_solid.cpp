@@ -347,7 +347,7 @@ class FunctionSolid final : public Solid, public NearestPoints {
 
     /// The point of the boundary nearest to `p`, near `start`. The gradient is that of differences.
     Inquiry<std::optional<Point>> foot_of(const Point p, const Point start) const {
-        FootSearch search(p, start, shortest_step(lattice_), rounding_);
+        FootSearch search(p, start, shortest_step(lattice_), rounding_, false);
         while (!search.is_done()) {
             ValueAt here = value_at(search.place());
             const double value = co_await here;

@@ -335,7 +335,7 @@ class ImageSolid final : public PointwiseSolid {
         if (!start) {
             return std::nullopt;
         }
-        FootSearch search(p, *start, shortest_step(field_.lattice), rounding_);
+        FootSearch search(p, *start, shortest_step(field_.lattice), rounding_, true);
         while (!search.is_done()) {
             const Coordinates index = index_of(search.place());
             if (is_within(index)) {

@@ -33,11 +33,12 @@ constexpr double kMostReach = 2.0;
 
 }  // namespace
 
-FootSearch::FootSearch(const Point& p, const Point& start, double step, double accuracy)
+FootSearch::FootSearch(const Point& p, const Point& start, double step, double accuracy, bool is_smooth)
     : p_(p),
       step_(step),
       accuracy_(accuracy),
-      place_(start),
+      // Very near to a smooth surface `p` is as good a place to start.
+      place_(is_smooth && distance(p, start) < kVeryNear * step ? p : start),
       start_(start),
       trust_(step),
       best_{start, distance(p, start) > 0.0 ? unit(start - p) : Point{1, 0, 0}},

@@ -27,7 +27,8 @@ class FootSearch {
     ///     it lies on; at `p` itself the function may be that of the other face.
     /// \param step no step is longer; about how fine the function's features are
     /// \param accuracy of the point along the normal
-    FootSearch(const Point& p, const Point& start, double step, double accuracy);
+    /// \param is_smooth whether the function has no edges: then the search may start at `p`
+    FootSearch(const Point& p, const Point& start, double step, double accuracy, bool is_smooth);
 
     bool is_done() const { return stage_ == Stage::kDone; }
     /// The point found; nothing if no sign change was.
