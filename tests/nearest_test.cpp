@@ -640,6 +640,34 @@ TEST(NearestOfAFunction, OfAUnionIsFoundInItsNotch) {
     EXPECT_LE(worst_error(*solid, points, truth), step * step / 0.6);
 }
 
+TEST(NearestOfAFunction, AReentrantEdgeIsFoundFromCloseBy) {
+    // But for points that are almost as near to another face.
+    Random random = announced(75);
+    for (int turn = 0; turn < 6; ++turn) {
+        const Similarity turned = random_turn(random);
+        const auto ell = [&](const Point& q) {
+            const Point p = turned.inverse(q);
+            return std::max({-p.z, p.z - 2.0, -p.x, -p.y, p.x - 4.0, p.y - 4.0, std::min(p.x - 1.0, p.y - 1.0)});
+        };
+        const Point middle = turned({2, 2, 1});
+        const Point half{3.3, 3.3, 3.3};
+        const auto solid = function_solid(ell, {.bounds = {middle - half, middle + half}, .is_distance = true});
+        const double step = 2.0 * norm(half) / 128;
+        int wrong = 0;
+        for (int i = 0; i < 4000; ++i) {
+            const double near = 0.1 * uniform(random, 0.0, 1.0) * uniform(random, 0.0, 1.0);
+            const Point p{1.0 - near * uniform(random, 0.0, 1.0), 1.0 - near * uniform(random, 0.0, 1.0),
+                          uniform(random, 0.0, 0.15)};
+            const std::optional<Point> found = solid->nearest(turned(p));
+            ASSERT_TRUE(found);
+            const double error = distance(turned(p), *found) - std::min(p.z, std::hypot(1.0 - p.x, 1.0 - p.y));
+            ASSERT_LE(error, 0.25 * step);
+            wrong += error > 1e-6 * step ? 1 : 0;
+        }
+        EXPECT_LE(wrong, 80);
+    }
+}
+
 TEST(NearestOfAFunction, ItNeedNotBeSmoothNorADistance) {
     Random random = announced(69);
     const ImplicitSolid::Function function = torus_solid(1.0, 0.4).function();

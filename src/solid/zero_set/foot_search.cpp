@@ -123,6 +123,11 @@ void FootSearch::descend(double value, const Point& gradient) {
     const Point to = target(foot, rest);
     const double wanted = distance(foot, to);
     if (distance(place_, to) <= enough) {
+        // On an edge: planes tell of nearer places in front of a re-entrant one, along whose normals the function need
+        // not change its sign.
+        if (planes_.size() > 1) {
+            best_ = {foot, far > accuracy_ ? unit(foot - p_) : normal};
+        }
         look_along_normal();
         return;
     }

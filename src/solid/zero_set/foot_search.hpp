@@ -22,9 +22,8 @@ namespace scaleaxis::inline v1 {
 /// finds none, or one that is farther than the start, lines through the start are tried.
 class FootSearch {
    public:
-    /// \param start a place close to the zero, closer than half a step. Beside an edge it is followed along the face
-    /// that
-    ///     it lies on; at `p` itself the function may be that of the other face.
+    /// \param start a place close to the zero, closer than half a step. Beside an edge the face that it lies on is
+    /// followed; at `p` itself the function may be that of the other face.
     /// \param step no step is longer; about how fine the function's features are
     /// \param accuracy of the point along the normal
     /// \param is_smooth whether the function has no edges: then the search may start at `p`
