@@ -31,8 +31,13 @@ namespace {
 
 using namespace test;
 
+/// The axis that the pipeline centers: only the last filter, afterwards, takes the whole angle.
 MedialComplex axis_before(const Solid& solid, double delta, double scale) {
-    return scale_axis(solid, {.delta = Length::relative(delta), .scales = {scale}, .is_centered = false})
+    return scale_axis(solid, {.delta = Length::relative(delta),
+                              .scales = {scale},
+                              .filter_angle = 0.93 * 30.0,
+                              .sharp_angle = 61.0,
+                              .is_centered = false})
         .axes[0]
         .complex;
 }

@@ -91,7 +91,7 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
         }
         // What is smaller than such a disc is a crumb, whatever its radii: in an apex they are small.
         const double room = kMostRoom * tolerance;
-        if (area < 0.25 * std::numbers::pi * room * room) {
+        if (room < kInfinity && area < 0.25 * std::numbers::pi * room * room) {
             slivers.push_back({area, sheet, kMostWidth * tolerance});
         } else if (2.0 * area < most && !has_room_for(room, complex, faces_of[sheet], outline)) {
             slivers.push_back({area, sheet, most / perimeter});

@@ -8,9 +8,10 @@
 namespace scaleaxis::inline v1 {
 
 /// Draws sheets together that are narrower on average than balls of a union are off, `tolerance` / 2, or than a quarter
-/// of their smallest ball, by contracting their edges where that keeps the homotopy type. Sheets at sharp edges of the
-/// solid, with balls of radius 0, stay. \param complex with balls that touch the solid: where four sheets of it meet in
-/// one seam, a fifth between them has no width
+/// of their smallest ball, by contracting their edges where that keeps the homotopy type; and crumbs, whatever their
+/// balls. Sheets at sharp edges of the solid, with balls of radius 0, stay. \param complex with balls that touch the
+/// solid: where four sheets of it meet in one seam, a fifth between them has no width \param tolerance infinite: balls
+/// alone tell what is narrow
 MedialComplex without_slivers(MedialComplex complex, double tolerance);
 
 /// Seams that end less than a `tolerance` before the border of a sheet that is folded along them end on it, so that the

@@ -304,7 +304,7 @@ class WallMiddle {
         });
     }
 
-    // Means over the triangles up to a radius away: those of single small ones are noisy.
+    // Means over near triangles: those of single small ones are noisy. At the rim of a curved wall they are one-sided.
     void find_normals() {
         const TriangleMesh& mesh = bvh_->mesh;
         normals_.resize(mesh.triangles.size());
@@ -313,7 +313,7 @@ class WallMiddle {
             [&](std::size_t t) {
                 const Point center = centroid_of(mesh, t);
                 const Point own = area_vector_of(mesh, t);
-                const double reach = 0.5 * thickness_;
+                const double reach = kNearby * 0.5 * thickness_;
                 Box box;
                 box.extend(center - Point{reach, reach, reach});
                 box.extend(center + Point{reach, reach, reach});
