@@ -404,6 +404,7 @@ def test_view_of_other_results(box, tmp_path):
     assert model["statistics"]["branches"] == len(curves.branches)
     assert model_of(scaleaxis.skeleton(axis.complex).view(tmp_path / "curves.html"))["shape"] is None
 
+    vertices, triangles = scaleaxis.with_short_edges((vertices, triangles), 0.1)
     found = scaleaxis.thickness(axis, vertices)
     model = model_of(found.view(vertices, triangles, tmp_path / "thickness.html", limit=0.5, axis=axis))
     assert model["thickness"]["largest"] == max(found.local.max(), found.foot.max())
