@@ -43,10 +43,6 @@ constexpr double kCloser = 0.95;
 // Of the progress of making an axis compact: the first time.
 constexpr double kSimplified = 0.9;
 
-// How far from the union's radii linear ones may be between the vertices of an axis that is smoothed or centered, as a
-// part of δ.
-constexpr double kLinearPart = 0.2;
-
 // Of the angle of the filter, where sheets are filtered again once their angles are right: so much do those of a union
 // scatter. With 1 parts of sheets go that are a degree wider than the angle, with 0.75 sheets between ribs are lost.
 constexpr double kFirstAngle = 0.93;
@@ -237,7 +233,7 @@ void shrink_balls(StageData& data, const Execution& execution) {
 
 void smooth_sheets(StageData& data, const Execution& execution) {
     MedialComplex complex = in_arena(execution, [&] {
-        return linearized_around_borders(std::move(data.result.complex), kLinearPart * data.given.tolerance);
+        return linearized_around_borders(std::move(data.result.complex), kLeastDip * data.given.tolerance);
     });
     data.result.complex =
         smooth(std::move(complex), std::exchange(data.grown, {}), {smoothing_of(data.options)}, execution);

@@ -536,10 +536,8 @@ MedialComplex with_room_around(const std::vector<Sliver>& slivers, const MedialC
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
         const auto& [a, b] = complex.edges[e];
         if (is_side[e] == 0 && faces_at[e] > 0 && (is_at_sliver[a] != 0 || is_at_sliver[b] != 0)) {
-            middles[e] = add_vertex(
-                result,
-                {midpoint(complex.vertices[a], complex.vertices[b]), 0.5 * (complex.radii[a] + complex.radii[b])},
-                origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
+            middles[e] = add_vertex(result, mean_ball(complex, complex.edges[e]),
+                                    origin_between(complex.vertex_origins[a], complex.vertex_origins[b]));
         }
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
@@ -550,16 +548,14 @@ MedialComplex with_room_around(const std::vector<Sliver>& slivers, const MedialC
             continue;
         }
         std::vector<Index> around;
-        double radius = 0.0;
         for (std::size_t k = 0; k < corners.size(); ++k) {
-            radius += complex.radii[corners[k]] / static_cast<double>(corners.size());
             around.push_back(corners[k]);
             if (const Index middle = middles[complex.face_edges[f][k]]; middle != kNone) {
                 around.push_back(middle);
             }
         }
-        const Index center =
-            add_vertex(result, {center_of_face(complex, static_cast<Index>(f)), radius}, linear_vertex(radius));
+        const Ball mean = mean_ball(complex, corners);
+        const Index center = add_vertex(result, mean, linear_vertex(mean.radius));
         for (std::size_t k = 0; k < around.size(); ++k) {
             add_face(result, std::array{center, around[k], around[(k + 1) % around.size()]}, values);
         }

@@ -66,9 +66,6 @@ constexpr double kMostShrinking = 0.1;
 constexpr double kFaceError = 0.1;
 constexpr int kMostCenteringRounds = 4;
 
-// Of the tolerance: how far radii that are linear between vertices may be above those of the union.
-constexpr double kLinearPart = 0.2;
-
 // Of the distance from the boundary: what is nearer than this is on the same side. Less than all of it, since solids
 // that find the nearest point by a local search may miss a nearer one.
 constexpr double kSureReach = 0.5;
@@ -540,7 +537,7 @@ class DipsOfUnion {
         for (std::size_t i = 0; i < touching.vertices.size(); ++i) {
             numbers_[touching.vertices[i]] = static_cast<Index>(i);
         }
-        std::vector<std::array<Index, 2>> pairs = pairs_off_linear(complex, kLinearPart * tolerance);
+        std::vector<std::array<Index, 2>> pairs = pairs_off_linear(complex, kLeastDip * tolerance);
         std::erase_if(pairs, [&](const auto& pair) { return !touches(pair[0]) || !touches(pair[1]); });
         keep_touching(std::move(pairs), solid, kFaceError * tolerance);
     }
@@ -740,7 +737,7 @@ CenteredComplex centered(MedialComplex complex, const Solid& solid, const Center
         Touching of_given = touching_balls_of_all(complex, solid, options, Feet::kComeToSeams, execution);
         const DipsOfUnion dips(complex, of_given, solid, tolerance);
         of_given.questions += dips.questions();
-        complex = linearized(std::move(complex), kLinearPart * tolerance,
+        complex = linearized(std::move(complex), kLeastDip * tolerance,
                              [&](Index a, Index b) { return dips.needs_none(a, b); });
         Touching of_new =
             touching_balls(complex, vertices_from(given, complex), solid, tolerance, Feet::kComeToSeams, {});

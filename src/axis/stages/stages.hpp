@@ -58,6 +58,10 @@ SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& s
 /// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
 BallUnion grown_union(const MedialComplex& complex, const Execution& execution);
 
+/// How far linear radii may be above those of the union, between the vertices of an axis that is smoothed or centered:
+/// a part of δ.
+inline constexpr double kLeastDip = 0.2;
+
 /// Is it known of a pair of vertices that a linear radius between them will do?
 using LinearPairs = std::function<bool(Index, Index)>;
 inline bool no_pairs(Index, Index) { return false; }
