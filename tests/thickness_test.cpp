@@ -23,6 +23,7 @@
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
 #include "spatial/slab.hpp"
 #include "spatial/slab_tree.hpp"
 
@@ -236,6 +237,22 @@ TEST(Thickness, OfAPartIsNowhereLessThanThatOfItsThinnestWall) {
         EXPECT_LT(least->thickness, 1.01 * part.least);
         for (const PointThickness& at : found) {
             EXPECT_LE(at.ball.radius, (1.0 + 1e-9) * distance(at.ball.center, *solid->nearest(at.ball.center)));
+        }
+    }
+}
+
+// Balls grow all along the seams that lead out of corners, if these stay where three faces are equally near.
+TEST(Thickness, OfACornerIsThatOfItsBoxWhereTheAxisAloneTells) {
+    const TriangleMesh box = box_mesh({0, 0, 0}, {2, 3, 4});
+    for (unsigned seed = 1; seed <= 12; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Random random(seed);
+        const TriangleMesh turned = test::moved(box, test::random_turn(random));
+        const auto solid = mesh_solid(turned);
+        const Thickness thickness(
+            scale_axis(*solid, {.delta = Length::relative(0.05), .scales = {1.0}}).axes[0].complex);
+        for (const PointThickness& corner : thickness.at_surface(turned.vertices)) {
+            EXPECT_NEAR(corner.thickness, 2.0, 0.02);
         }
     }
 }

@@ -102,14 +102,12 @@ struct Centering {
         return most;
     }
 
-    // No ball around `p` has a larger radius.
-    double reach(const Point& p) const {
-        double least = std::numeric_limits<double>::infinity();
-        for (const Point& place : places) {
-            least = std::min(least, squared_distance(p, place));
-        }
-        return std::sqrt(least);
+    const Point& nearest_place(const Point& p) const {
+        return *std::ranges::min_element(places, {}, [&](const Point& place) { return squared_distance(p, place); });
     }
+
+    // No ball around `p` has a larger radius.
+    double reach(const Point& p) const { return distance(p, nearest_place(p)); }
 };
 
 void add_direction(std::vector<Point>& directions, const Point& direction) {
@@ -432,7 +430,18 @@ class CenteringBatch {
         for (auto& [normal, height] : vertex.planes) {
             height -= dot(normal, way);
         }
-        vertex.is_moving = !stays(vertex) && norm(way) > kSettledMove * tolerance_;
+        vertex.is_moving = !stays(vertex) && (has_nearer_contact(vertex) || norm(way) > kSettledMove * tolerance_);
+    }
+
+    // Does something of the boundary lie before all of these planes? Then it is a contact, too: where sheets meet,
+    // those of the faces at a vertex need not tell of it.
+    static bool has_nearer_contact(Centering& vertex) {
+        const Point way = vertex.nearest_place(vertex.center) - vertex.center;
+        const std::size_t known = vertex.directions.size();
+        if (std::ranges::all_of(vertex.planes, [&](const ContactPlane& plane) { return norm(way) < plane.distance; })) {
+            add_direction(vertex.directions, unit(way));
+        }
+        return vertex.directions.size() > known;
     }
 
     // Where the ball has become smaller on the way, the vertex goes back.
