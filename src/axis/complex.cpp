@@ -159,6 +159,18 @@ double radius_between(double radius_a, double radius_b, double squared_length, d
     return std::sqrt(std::max(square, 0.0));
 }
 
+std::optional<double> deepest_dip(double radius_a, double radius_b, double squared_length) {
+    // Where the radius grows as fast as a linear one.
+    const double rise = radius_b - radius_a;
+    const double bend = rise * (radius_a + radius_b) - squared_length;
+    const double height = 4.0 * radius_a * radius_a * squared_length - bend * bend;  // 0 where the balls touch
+    const double slack = squared_length - rise * rise;
+    if (!(height > 0.0) || !(slack > 0.0)) {
+        return std::nullopt;
+    }
+    return (rise * std::sqrt(height / slack) - bend) / (2.0 * squared_length);
+}
+
 MedialComplex grown(MedialComplex complex) {
     for (double& radius : complex.radii) {
         radius *= complex.scale;

@@ -110,6 +110,10 @@ Box box_of_balls(const MedialComplex& complex);
 /// function.
 double radius_between(double radius_a, double radius_b, double squared_length, double t);
 
+/// The part of such an edge at which its radius is the farthest below a linear one. Nothing where the balls do not
+/// meet, or one holds the other.
+std::optional<double> deepest_dip(double radius_a, double radius_b, double squared_length);
+
 /// How an edge without faces is seen from the boundary, which is closest to it in a circle around it.
 struct CurveSize {
     double object_angle = 0.0;  ///< the largest on the edge; degrees

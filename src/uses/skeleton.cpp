@@ -63,7 +63,7 @@ Burnt burnt_sheets(const MedialComplex& given) {
     const auto is_missed = [](const RidgeCrossing& crossing) {
         return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
     };
-    for (int round = 0; round < kMostCutRounds && cut(burnt, cuts_at_ridges(burnt, kInfinity, is_missed)); ++round) {
+    for (int round = 0; round < kMostCutRounds && cut(burnt, cuts_at_ridges(burnt, is_missed)); ++round) {
         // once more
     }
     const auto& [complex, radii, sides, sectors, fire] = burnt;

@@ -98,7 +98,13 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
 }
 
 MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
-    MedialComplex result = vertices_of(complex);
+    return halved_with_parents(complex, halving).complex;
+}
+
+HalvedComplex halved_with_parents(const MedialComplex& complex, const Halving& halving) {
+    HalvedComplex all;
+    MedialComplex& result = all.complex;
+    result = vertices_of(complex);
     std::vector<Index> middles(complex.edges.size(), kNone);
     const std::vector<std::uint8_t> has_face = edges_with_faces(complex);
     std::vector<std::array<Index, 2>> curves;
@@ -122,7 +128,10 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
         const FaceValues values = values_of(complex, static_cast<Index>(f));
-        const auto add = [&](std::span<const Index> part) { add_face(result, part, values); };
+        const auto add = [&](std::span<const Index> part) {
+            add_face(result, part, values);
+            all.parents.push_back(static_cast<Index>(f));
+        };
         const std::span<const Index> corners = complex.faces[f];
         const std::span<const Index> sides = complex.face_edges[f];
         if (std::ranges::all_of(sides, [&](Index e) { return middles[e] == kNone; })) {
@@ -145,7 +154,7 @@ MedialComplex halved(const MedialComplex& complex, const Halving& halving) {
     }
     build_edges(result, curves);
     label_sheets(result);
-    return result;
+    return all;
 }
 
 }  // namespace scaleaxis::inline v1

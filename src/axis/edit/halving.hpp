@@ -41,4 +41,11 @@ Halving edges_to_halve(const MedialComplex& complex, const Solid& solid, const H
 /// new ones are `kTouching`, except those of the medial axis.
 MedialComplex halved(const MedialComplex& complex, const Halving& halving);
 
+/// The same, and which face each of its faces is a part of.
+struct HalvedComplex {
+    MedialComplex complex;
+    std::vector<Index> parents;
+};
+HalvedComplex halved_with_parents(const MedialComplex& complex, const Halving& halving);
+
 }  // namespace scaleaxis::inline v1

@@ -568,7 +568,7 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
     const auto is_thick = [&](double thickness, double radius) {
         return thickness >= local_thickness(options.thickness, radius);
     };
-    Halving cuts = cuts_at_ridges(burnt, options.thickness, [&](const RidgeCrossing& crossing) {
+    Halving cuts = cuts_at_ridges(burnt, [&](const RidgeCrossing& crossing) {
         return is_thick(crossing.thickness, crossing.radius) &&
                !(is_thick(crossing.end_thickness[0], crossing.end_radii[0]) &&
                  is_thick(crossing.end_thickness[1], crossing.end_radii[1]));
@@ -602,7 +602,7 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
 
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
-    BurntComplex burnt = burnt_complex(given);
+    BurntComplex burnt = burnt_complex(given, options.finds_ridges ? kOpeningSlack * options.thickness : kInfinity);
     Opening opening(burnt, options.thickness);
     const int rounds = options.finds_ridges ? kMostCutRounds : 0;
     for (int round = 0; round < rounds && cut(burnt, cuts_for(burnt, opening, options)); ++round) {

@@ -5,9 +5,11 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <optional>
 #include <queue>
 #include <utility>
 
+#include "axis/complex.hpp"
 #include "axis/edit/remainder.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
@@ -31,11 +33,6 @@ Front front_between(const Point& a, const Point& b, double time_a, double time_b
     return front;
 }
 
-struct Arrival {
-    double time = kInfinity;
-    double path = kInfinity;
-};
-
 // The first arrival at `x`, on a straight way: what comes from the border first has not met the border in between, so
 // that in a plane sheet no way is shorter. A way along the edges of faces would zigzag.
 Arrival arrival(const Front& front, const Point& x) {
@@ -53,9 +50,11 @@ Arrival arrival(const Front& front, const Point& x) {
 // faces from a vertex that is left with this one edge. The rule for seams comes out of that by itself.
 class Burning {
    public:
-    Burning(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors)
+    Burning(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
+            double tolerance)
         : complex_(complex),
           radii_(radii),
+          tolerance_(tolerance),
           sides_(sides),
           sectors_(sectors),
           sectors_at_(grouped(complex.vertices.size(),
@@ -151,14 +150,9 @@ class Burning {
         } else {
             const bool is_border = sides_.of_edge[edge].size() == 1;
             const auto times = is_border ? std::array{radii_[p], radii_[q]} : latest_across_seam(edge, face);
-            Front border = front_between(complex_.vertices[p], complex_.vertices[q], times[0], times[1]);
-            border.ends = {p, q};
-            border.sheet = complex_.face_sheets[face];
             front_of_edge_[edge] = static_cast<Index>(fronts_.size());
-            fronts_.push_back(border);
-            for (const Index v : {p, q}) {
-                fronts_at_[v].push_back(front_of_edge_[edge]);
-            }
+            add_fronts({complex_.vertices[p], times[0]}, {complex_.vertices[q], times[1]}, {p, q},
+                       complex_.face_sheets[face], is_border && !is_linear(complex_, {p, q}));
             near_fronts_.assign(1, front_of_edge_[edge]);
             for (const Index side : sides_.of_edge[edge]) {
                 if (sides_.face_of[side] == face) {
@@ -171,6 +165,27 @@ class Burning {
             }
         }
         events_.emplace(burnt_through(edge, face), edge);
+    }
+
+    // From one ball to another, on an edge with these ends: as many fronts as it takes for radii of a union to be
+    // nearly linear on each.
+    void add_fronts(const Ball& from, const Ball& to, const std::array<Index, 2>& ends, Index sheet, bool may_dip) {
+        const double square = squared_distance(from.center, to.center);
+        const auto at = may_dip ? deepest_dip(from.radius, to.radius, square) : std::nullopt;
+        const Ball between{from.center + at.value_or(0.0) * (to.center - from.center),
+                           radius_between(from.radius, to.radius, square, at.value_or(0.0))};
+        if (at && std::lerp(from.radius, to.radius, *at) - between.radius > tolerance_) {
+            add_fronts(from, between, ends, sheet, true);
+            add_fronts(between, to, ends, sheet, true);
+            return;
+        }
+        Front front = front_between(from.center, to.center, from.radius, to.radius);
+        front.ends = ends;
+        front.sheet = sheet;
+        for (const Index v : ends) {
+            fronts_at_[v].push_back(static_cast<Index>(fronts_.size()));
+        }
+        fronts_.push_back(front);
     }
 
     // Which of two fronts, or `kNone`, comes first.
@@ -342,6 +357,7 @@ class Burning {
 
     const MedialComplex& complex_;
     const std::vector<double>& radii_;
+    double tolerance_;
     const Sides& sides_;
     const Sectors& sectors_;
     IndexLists sectors_at_;  // of each vertex
@@ -414,21 +430,22 @@ Sectors sectors_of(const MedialComplex& complex, const Sides& sides) {
     return result;
 }
 
-Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors) {
-    return Burning(complex, radii, sides, sectors).run();
+Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
+          double tolerance) {
+    return Burning(complex, radii, sides, sectors, tolerance).run();
 }
 
-double time_beside(const Fire& fire, Index sector, const Point& x) {
+std::pair<Arrival, Index> arrival_beside(const Fire& fire, Index sector, const Point& x) {
     Index front = fire.sector_fronts[sector];
-    double time = arrival(fire.fronts[front], x).time;
+    Arrival first = arrival(fire.fronts[front], x);
     for (bool has_changed = true; has_changed;) {
         has_changed = false;
         const Front& at = fire.fronts[front];
         for (const Index end : at.ends) {
             for (const Index other : fire.fronts_at[end]) {
                 if (const Front& beside = fire.fronts[other]; beside.sheet == at.sheet) {
-                    if (const double sooner = arrival(beside, x).time; sooner < time) {
-                        time = sooner;
+                    if (const Arrival sooner = arrival(beside, x); sooner.time < first.time) {
+                        first = sooner;
                         front = other;
                         has_changed = true;
                     }
@@ -436,7 +453,7 @@ double time_beside(const Fire& fire, Index sector, const Point& x) {
             }
         }
     }
-    return time;
+    return {first, front};
 }
 
 ErosionThickness erosion_thickness(const MedialComplex& complex, const Execution& execution) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "axis/edit/collapse.hpp"
+#include "base/numbers.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -59,11 +60,20 @@ struct Fire {
     std::vector<std::vector<Index>> fronts_at;  ///< of each vertex, those of edges
 };
 
-/// When the fire reaches a point beside a sector from the front from which it came there, or from one near it.
-double time_beside(const Fire& fire, Index sector, const Point& x);
+/// When the fire comes by, and how long its way from the border or a seam was.
+struct Arrival {
+    double time = kInfinity;
+    double path = kInfinity;
+};
+
+/// How the fire reaches a point beside a sector: from the front from which it came there, or from one near it, and from
+/// which. \param sector that the fire reaches
+std::pair<Arrival, Index> arrival_beside(const Fire& fire, Index sector, const Point& x);
 
 /// \param radii of the vertices: the times at which the fire starts at the border
-Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors);
+/// \param tolerance by which it may start later between these, where radii of a union are less than linear
+Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
+          double tolerance = kInfinity);
 
 /// The key by which faces collapse in the order in which they burn, from that of their free edges which burns first;
 /// nothing for a collapse without a face.

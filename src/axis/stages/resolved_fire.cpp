@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "axis/complex.hpp"
 #include "axis/edit/halving.hpp"
@@ -23,14 +25,14 @@ constexpr int kBisections = 6;  // to a hundredth of the edge
 
 class RidgeCuts {
    public:
-    RidgeCuts(const BurntComplex& burnt, double tolerance, const std::function<bool(const RidgeCrossing&)>& is_missed)
-        : burnt_(burnt), tolerance_(tolerance), is_missed_(is_missed) {}
+    RidgeCuts(const BurntComplex& burnt, const std::function<bool(const RidgeCrossing&)>& is_missed)
+        : burnt_(burnt), is_missed_(is_missed) {}
 
     Halving run() const {
         const std::size_t count = burnt_.complex.edges.size();
         Halving cuts{std::vector<std::uint8_t>(count), std::vector<double>(count), std::vector<double>(count)};
         for_each_index(static_cast<Index>(count), [&](Index e) {
-            if (const std::optional<double> at = cut_of(e)) {
+            if (const std::optional<double> at = burnt_.sides.is_regular(e) ? meeting_of(e) : std::nullopt) {
                 note_cut(burnt_, e, *at, cuts);
             }
         });
@@ -38,19 +40,6 @@ class RidgeCuts {
     }
 
    private:
-    std::optional<double> cut_of(Index edge) const {
-        const std::size_t faces = burnt_.sides.of_edge[edge].size();
-        return faces == 1 ? dip_of(edge) : faces == 2 ? meeting_of(edge) : std::nullopt;
-    }
-
-    // The middle of an edge of the border, if balls there are smaller than the fire takes them for.
-    std::optional<double> dip_of(Index edge) const {
-        const auto& [p, q] = burnt_.complex.edges[edge];
-        const double linear = 0.5 * (burnt_.radii[p] + burnt_.radii[q]);
-        const double radius = radius_on_edge(burnt_.complex, burnt_.radii, edge, 0.5);
-        return radius > 0.0 && linear - radius > tolerance_ ? std::optional(0.5) : std::nullopt;
-    }
-
     // Where fires from both ends meet, if a vertex is missed there.
     std::optional<double> meeting_of(Index edge) const {
         const auto& [complex, radii, sides, sectors, fire] = burnt_;
@@ -77,8 +66,8 @@ class RidgeCuts {
         for (int k = 0; k < kBisections; ++k) {
             t = 0.5 * (from + to);
             const Point at = complex.vertices[p] + t * (complex.vertices[q] - complex.vertices[p]);
-            const double from_p = time_beside(fire, at_p, at);
-            const double from_q = time_beside(fire, at_q, at);
+            const double from_p = arrival_beside(fire, at_p, at).first.time;
+            const double from_q = arrival_beside(fire, at_q, at).first.time;
             time = std::min(from_p, from_q);
             (from_p < from_q ? from : to) = t;
             // At the place where the search ends the fire is not later than here by more than the way there.
@@ -94,9 +83,76 @@ class RidgeCuts {
     }
 
     const BurntComplex& burnt_;
-    double tolerance_;
     const std::function<bool(const RidgeCrossing&)>& is_missed_;
 };
+
+// A complex with its radii, sides and sectors.
+BurntComplex before_the_fire(MedialComplex complex) {
+    BurntComplex result{std::move(complex), {}, {}, {}, {}};
+    result.radii = each_of<double>(result.complex.radii, [&](double radius) { return result.complex.scale * radius; });
+    result.sides = sides_of(result.complex);
+    result.sectors = sectors_of(result.complex, result.sides);
+    return result;
+}
+
+// The first arrival at a point of a face that comes by one of its corners, and from which front.
+std::pair<Arrival, Index> arrival_in_face(const BurntComplex& burnt, Index face, const Point& x) {
+    std::pair<Arrival, Index> first{{}, kNone};
+    for (Index c = burnt.complex.faces.offsets[face]; c < burnt.complex.faces.offsets[face + 1]; ++c) {
+        const Index sector = burnt.sectors.of_corner[c];
+        if (burnt.fire.sector_fronts[sector] != kNone) {
+            const auto found = arrival_beside(burnt.fire, sector, x);
+            first = found.first.time < first.first.time ? found : first;
+        }
+    }
+    return first;
+}
+
+// The fire on a complex that was cut, in no seams or curves: it burns as before, and comes by the new vertices.
+Fire fire_on_parts(const BurntComplex& before, const BurntComplex& parts, std::span<const Index> parents) {
+    Fire fire;
+    fire.fronts = before.fire.fronts;
+    fire.fronts_at = before.fire.fronts_at;
+    fire.fronts_at.resize(parts.complex.vertices.size());
+    fire.sector_times.assign(parts.sectors.vertices.size(), kInfinity);
+    fire.sector_paths.assign(parts.sectors.vertices.size(), kInfinity);
+    fire.sector_fronts.assign(parts.sectors.vertices.size(), kNone);
+    fire.vertex_times = before.fire.vertex_times;
+    fire.vertex_times.insert(fire.vertex_times.end(), parts.radii.begin() + before.radii.size(), parts.radii.end());
+    std::vector<Index> sheets(before.complex.sheets);
+    for (Index f = 0; f < static_cast<Index>(parents.size()); ++f) {
+        const Index parent = parents[f];
+        sheets[before.complex.face_sheets[parent]] = parts.complex.face_sheets[f];
+        const std::span<const Index> corners = before.complex.faces[parent];
+        for (Index c = parts.complex.faces.offsets[f]; c < parts.complex.faces.offsets[f + 1]; ++c) {
+            const Index v = parts.complex.faces.items[c];
+            const Index sector = parts.sectors.of_corner[c];
+            if (const auto corner = std::ranges::find(corners, v); corner != corners.end()) {
+                const Index old =
+                    before.sectors
+                        .of_corner[before.complex.faces.offsets[parent] + static_cast<Index>(corner - corners.begin())];
+                fire.sector_times[sector] = before.fire.sector_times[old];
+                fire.sector_paths[sector] = before.fire.sector_paths[old];
+                fire.sector_fronts[sector] = before.fire.sector_fronts[old];
+                continue;
+            }
+            const auto [arrival, front] = arrival_in_face(before, parent, parts.complex.vertices[v]);
+            if (arrival.time < fire.sector_times[sector]) {
+                fire.sector_times[sector] = arrival.time;
+                fire.sector_paths[sector] = arrival.path;
+                fire.sector_fronts[sector] = front;
+            }
+        }
+    }
+    for (Index s = 0; s < static_cast<Index>(parts.sectors.vertices.size()); ++s) {
+        double& time = fire.vertex_times[parts.sectors.vertices[s]];
+        time = std::max(time, fire.sector_times[s]);
+    }
+    for (Front& front : fire.fronts) {
+        front.sheet = front.sheet == kNone ? kNone : sheets[front.sheet];
+    }
+    return fire;
+}
 
 }  // namespace
 
@@ -107,12 +163,9 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
                : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
 }
 
-BurntComplex burnt_complex(MedialComplex complex) {
-    BurntComplex result{std::move(complex), {}, {}, {}, {}};
-    result.radii = each_of<double>(result.complex.radii, [&](double radius) { return result.complex.scale * radius; });
-    result.sides = sides_of(result.complex);
-    result.sectors = sectors_of(result.complex, result.sides);
-    result.fire = burn(result.complex, result.radii, result.sides, result.sectors);
+BurntComplex burnt_complex(MedialComplex complex, double tolerance) {
+    BurntComplex result = before_the_fire(std::move(complex));
+    result.fire = burn(result.complex, result.radii, result.sides, result.sectors, tolerance);
     return result;
 }
 
@@ -120,7 +173,10 @@ bool cut(BurntComplex& burnt, const Halving& cuts) {
     if (cuts.count() == 0) {
         return false;
     }
-    burnt = burnt_complex(halved(burnt.complex, cuts));
+    auto [complex, parents] = halved_with_parents(burnt.complex, cuts);
+    BurntComplex parts = before_the_fire(std::move(complex));
+    parts.fire = fire_on_parts(burnt, parts, parents);
+    burnt = std::move(parts);
     return true;
 }
 
@@ -130,9 +186,8 @@ void note_cut(const BurntComplex& burnt, Index edge, double at, Halving& cuts) {
     cuts.parts[edge] = at;
 }
 
-Halving cuts_at_ridges(const BurntComplex& burnt, double tolerance,
-                       const std::function<bool(const RidgeCrossing&)>& is_missed) {
-    return RidgeCuts(burnt, tolerance, is_missed).run();
+Halving cuts_at_ridges(const BurntComplex& burnt, const std::function<bool(const RidgeCrossing&)>& is_missed) {
+    return RidgeCuts(burnt, is_missed).run();
 }
 
 }  // namespace scaleaxis::inline v1

@@ -9,6 +9,7 @@
 
 #include "axis/edit/halving.hpp"
 #include "axis/stages/fire.hpp"
+#include "base/numbers.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -22,9 +23,11 @@ struct BurntComplex {
     Fire fire;
 };
 
-BurntComplex burnt_complex(MedialComplex complex);
+/// \param tolerance as of `burn`
+BurntComplex burnt_complex(MedialComplex complex, double tolerance = kInfinity);
 
-/// Cuts edges, and burns all anew. \return whether there was any to cut
+/// Cuts edges inside sheets or on their border: the fire burns as before, and comes by the new vertices. \return
+/// whether there was any to cut
 bool cut(BurntComplex& burnt, const Halving& cuts);
 
 /// Notes that an edge is to be cut at the part `at` of it.
@@ -39,13 +42,11 @@ struct RidgeCrossing {
 };
 
 /// How often what is cut is looked at again.
-inline constexpr int kMostCutRounds = 2;  // each burns all anew; a third hardly finds more
+inline constexpr int kMostCutRounds = 2;  // a third hardly finds more
 
-/// Where fires meet between the ends of an edge, and edges of the border where the radius is less than linear by more
-/// than `tolerance`: the fire, which is known at vertices, would miss ridges and start too late. \param is_missed tells
-/// whether a ridge needs a vertex
-Halving cuts_at_ridges(const BurntComplex& burnt, double tolerance,
-                       const std::function<bool(const RidgeCrossing&)>& is_missed);
+/// Where fires meet between the ends of an edge: the fire, which is known at vertices, would miss the ridge.
+/// \param is_missed tells whether a ridge needs a vertex
+Halving cuts_at_ridges(const BurntComplex& burnt, const std::function<bool(const RidgeCrossing&)>& is_missed);
 
 /// The radius at the part `t` of an edge. \param radii of the vertices
 double radius_on_edge(const MedialComplex& complex, const std::vector<double>& radii, Index edge, double t);
