@@ -85,8 +85,8 @@ TEST(Simplify, KeepsToItsErrorOnBothSides) {
     const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.02), .scales = {1.0}});
     const MedialComplex& fine = axis.axes[0].complex;
     std::size_t last = fine.vertices.size();
-    // In errors, in the middle of edges: between the places that are looked at, which are as dense as the error or 0.4
-    // times the edges of the complex, whichever is larger. The smallest error is less than that.
+    // In errors, in the middle of edges: between the places that are looked at, which are as dense as the error or a
+    // quarter of the edges of the complex, whichever is larger. The smallest error is less than that.
     struct Bound {
         double error;
         double of_result;

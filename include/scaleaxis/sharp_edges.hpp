@@ -26,7 +26,7 @@ struct SharpEdgeStatistics {
     Index points = 0;     ///< vertices added, on sharp edges and in corners
     Index corners = 0;    ///< of these, in corners
     double length = 0.0;  ///< of the sharp edges that were reached
-    /// Of the convex edges of this angle that the solid knows, below 60° of long ones alone, but for those that growing
+    /// Of the convex edges of this angle, and of 40° at least, that the solid knows, except those that growing
     /// takes.
     double known = 0.0;
     Index sheets = 0;   ///< of the result: a sheet may have got a seam

@@ -30,7 +30,7 @@ struct SkeletonOptions {
     /// the box around its balls.
     double spacing = 0.0;
     /// How far a branch sticks out of the others to stay, relative to its own radius, ≥ 0. Where it runs in a sheet
-    /// 0.55 of the sheet's half width is added. At 1 a hemisphere on a wall has no branch any more, and a finger has.
+    /// 0.45 of the sheet's half width is added. At 1 a hemisphere on a wall has no branch any more, and a finger has.
     double significance = 1.0;
     /// Only a solid has mean radii; junctions keep the inscribed ones.
     SkeletonRadius radius = SkeletonRadius::kInscribed;

@@ -44,7 +44,7 @@ struct PointThickness {
 /// P. Rüegsegger, "A new method for the model-independent assessment of thickness in three-dimensional images", 1997).
 /// All balls in the solid lie in those of its medial axis. Points of the surface are on the border of the ball that
 /// touches there; as the balls are known up to the tolerance of the sampling only, that which must grow least to reach
-/// the point takes its place, and of others that reach it as soon, to within 2e-5, the largest. Where such a ball lies
+/// the point takes its place, and of others that reach it as soon, to within 1e-6, the largest. Where such a ball lies
 /// in an edge (see `ThicknessOptions::angle`) a larger one counts among the others, that reaches the point with the
 /// least growth: so a cube reads as its side up to its corners, and so do fillets.
 ///

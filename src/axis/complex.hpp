@@ -12,6 +12,16 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Of the radius, half of what is between a place of the axis and the boundary: nearer places tell the same of the
+/// solid, and single simplices or slopes between neighbours are noisy where the axis is denser. Of the size of
+/// elements: nearer vertices are one, and none moves farther at once. With half of it single simplices count again;
+/// with twice of it junctions of different limbs become one.
+inline constexpr double kNearby = 0.5;
+
+/// Of the radius: what is less is an error of the sampling. Half of it leaves seams where four sheets meet as clusters
+/// of short seams; twice of it makes one of the sheets of thin panels.
+inline constexpr double kRadiusError = 0.1;
+
 /// Fills `edges` and `face_edges` from the faces and from edges that may have no face. Edges end up in ascending order.
 void build_edges(MedialComplex& complex, std::span<const std::array<Index, 2>> more_edges);
 

@@ -28,9 +28,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// How much of the box around the envelope is added on each side where it is looked for, as a part of the diagonal.
-constexpr double kEnvelopeMargin = 0.02;
-
 template <std::size_t Size>
 Slab slab_at(const MedialComplex& complex, const std::array<Index, Size>& vertices) {
     std::array<Ball, Size> balls;
@@ -313,7 +310,7 @@ Envelope::Envelope(const MedialComplex& complex) {
     }
     const Box box = box_around(complex.vertices);
     data_ = std::make_shared<const EnvelopeData>(
-        linearized(complex, std::max(kSmallError * box.diagonal(), std::numeric_limits<double>::min())));
+        linearized(complex, std::max(kSmallLength * box.diagonal(), std::numeric_limits<double>::min())));
 }
 
 Box Envelope::bounds() const { return data_->bounds(); }
@@ -332,7 +329,7 @@ std::vector<std::uint8_t> Envelope::inside(std::span<const Point> points, const 
 
 std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {
     Box box = envelope.bounds();
-    const double margin = kEnvelopeMargin * box.diagonal();
+    const double margin = kNegligible * box.diagonal();  // beyond the envelope, which touches the box
     box = {box.min - Point{margin, margin, margin}, box.max + Point{margin, margin, margin}};
     return function_solid([envelope](const Point& p) { return envelope.data().signed_distance(p); },
                           {.bounds = box, .smallest_feature = smallest_feature, .is_distance = true}, execution);

@@ -8,13 +8,12 @@
 
 #include "axis/complex.hpp"
 #include "base/angles.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/filter.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-constexpr double kFlatArea = 1e-12;  // of a square: what is left of an area by rounding
 
 // The plane of a polygon.
 struct FacePlane {
@@ -65,7 +64,8 @@ std::optional<Point> gradient(const MedialComplex& complex, std::span<const Inde
         yv += y * (value(v) - mean);
     }
     const double determinant = xx * yy - xy * xy;
-    if (!(determinant > kFlatArea * (xx + yy) * (xx + yy))) {
+    // What is left of the area of a polygon without any is rounding.
+    if (!(determinant > kRelativeRounding * (xx + yy) * (xx + yy))) {
         return std::nullopt;
     }
     return ((yy * xv - xy * yv) / determinant) * plane.x_axis + ((xx * yv - xy * xv) / determinant) * plane.y_axis;

@@ -13,6 +13,12 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Cosine of 26 degrees: directions that differ by less are the same. An edge goes on where the way to its next place
+/// differs by less from it: a rim of a radius of two tolerances turns by less, and an edge beside it that is as far as
+/// the step is not in the way. Parts of a wall, of its rim, or of a curve, which differ by less where they meet, are
+/// one: half of a bend that a shell can take.
+inline constexpr double kSameDirection = 0.9;
+
 /// A vector of length 1 at right angles to another one, which is not 0.
 inline Point any_normal_to(const Point& v) {
     const double x = std::abs(v.x), y = std::abs(v.y), z = std::abs(v.z);

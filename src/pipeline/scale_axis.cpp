@@ -26,6 +26,8 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
+static_assert(kDefaultDelta == Length::relative(kDefaultTolerance));
+
 // The error of a compact axis as a part of δ, unless options say otherwise.
 constexpr double kCompactError = 0.25;
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "axis/complex.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"

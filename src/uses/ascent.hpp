@@ -13,13 +13,12 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Of the radius, half of what is between a place of the axis and the boundary: nearer places tell the same of the
-/// solid, and single simplices or slopes between neighbours are noisy where the axis is denser.
-inline constexpr double kNearby = 0.5;
-
-/// Of the radius: what is less is an error of the sampling. Half of it leaves seams where four sheets meet as clusters
-/// of short seams; twice of it makes one of the sheets of thin panels.
-inline constexpr double kSamplingError = 0.1;
+/// Small beside a radius, a thickness or a way. Places that differ by less in thickness, or from a plane, are of one
+/// wall: 5 % change its stiffness by less than 1 %. A ball is seen from a point if balls along the way leave no more
+/// than this part of it uncovered, a step that is shorter meets a surface, and the middle between two sides is no
+/// farther than this from where `uphill` stops. Half of it costs a third more queries at sharp edges; at twice of it,
+/// walls a tenth as thick as the limit may be leapt over.
+inline constexpr double kSmallPart = 0.05;
 
 /// From which vertices on the radius grows as fast as in an edge: 1, else 0. All vertices nearby are looked at. \param
 /// edges of the complex, or of its triangles \param slope growth of the radius along the way, more than which is steep

@@ -31,12 +31,12 @@ constexpr double kPointsOfSpacing = 10.0;
 // the solid would take all memory.
 constexpr double kMostPoints = 3e6;
 
-// Of the diagonal: a point this near to the boundary belongs to it. Wraps are off by a little.
-constexpr double kBeside = 1e-3;
-
 std::vector<double> distances_to(const BallTree& tree, std::span<const Point> points) {
     return mapped<double>(points.size(), [&](std::size_t i) { return nearest_ball(tree, points[i]).distance; });
 }
+
+// At least so many points are looked at in the box around solid and balls, and on the boundary of the union.
+constexpr double kPoints = 40000.0;
 
 // One point in each cell of a grid.
 std::vector<Point> jittered_grid(const Box& box, double cell, std::uint64_t seed) {
@@ -55,11 +55,10 @@ std::vector<Point> jittered_grid(const Box& box, double cell, std::uint64_t seed
 
 void score_volume(BallScores& scores, const BallTree& tree, const Solid& solid, const Box& box, double rounding,
                   std::uint64_t seed) {
-    constexpr double kFirstPoints = 1e5;
     constexpr std::int64_t kEnoughInside = 30000;
     const Point size = box.max - box.min;
     const double volume = size.x * size.y * size.z;
-    for (double wanted = kFirstPoints;; wanted *= 4.0) {
+    for (double wanted = kPoints;; wanted *= 4.0) {
         const std::vector<Point> points = jittered_grid(box, cube_root(volume / wanted), seed);
         const std::vector<std::uint8_t> sides = sides_of(solid, points);
         const std::vector<double> distances = distances_to(tree, points);
@@ -102,7 +101,6 @@ void score_surface(BallScores& scores, const BallTree& tree, std::span<const Poi
 
 // Points of the boundary of the union, equally dense by area.
 std::vector<Point> boundary_points(std::span<const Ball> balls, const BallTree& tree, double rounding) {
-    constexpr double kPoints = 40000.0;
     const double squares = std::accumulate(balls.begin(), balls.end(), 0.0,
                                            [](double sum, const Ball& b) { return sum + b.radius * b.radius; });
     return collect<std::vector<Point>>(
@@ -195,7 +193,8 @@ std::vector<Point> points_left_out(const MeshView& triangles, const Solid& solid
                 }
             });
         const std::vector<std::uint8_t> sides = sides_of(solid, points);
-        const std::vector<double> beside(points.size(), kBeside * solid.bounds().diagonal());
+        // Wraps are off by a little.
+        const std::vector<double> beside(points.size(), kNegligible * solid.bounds().diagonal());
         const std::vector<std::optional<Point>> nearest = nearest_of(solid, points, beside);
         std::vector<Point> result;
         for (std::size_t i = 0; i < points.size(); ++i) {

@@ -79,7 +79,7 @@ MedialComplex without_slopes(MedialComplex walls, double angle, const Solid& sol
         return area;
     };
     for (Index v = 0; v < static_cast<Index>(balls.size()); ++v) {
-        if (walls.radii[v] < (1.0 - kSamplingError) * balls[v].radius) {
+        if (walls.radii[v] < (1.0 - kRadiusError) * balls[v].radius) {
             const double before = area_at(v);
             const Point place = std::exchange(walls.vertices[v], balls[v].center);
             if (area_at(v) > before) {
@@ -170,7 +170,7 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
         for (const Index e : complex.face_edges[f]) {
             for (const Index neighbor : at_edge[e]) {
                 const bool crosses = has_crossed || at_edge[e].size() > 2;
-                const bool enters = wall > 0.0 ? least_radius(neighbor) >= (1.0 - kSamplingError) * wall : !crosses;
+                const bool enters = wall > 0.0 ? least_radius(neighbor) >= (1.0 - kRadiusError) * wall : !crosses;
                 if (is_flooded[neighbor] == 0 && enters) {
                     front.emplace(crosses, std::max(level, radii[neighbor]), neighbor, wall);
                 }
@@ -466,10 +466,10 @@ MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
     // Where four sheets meet there are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7
     // radii: sheets that cross would stay joined at the ends of their seam.
     MedialComplex walls =
-        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kSamplingError);
+        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kRadiusError);
     const auto reaches = each_of<double>(walls.radii, [](double radius) { return kNearby * radius; });
     walls = without_slivers(with_seams_to_borders(std::move(walls), reaches), kInfinity);
-    return without_flaps(without_short_edges_at_seams(std::move(walls), kSamplingError));
+    return without_flaps(without_short_edges_at_seams(std::move(walls), kRadiusError));
 }
 
 Midsurface midsurface_of(const MedialComplex& complex, const Solid* solid, const MidsurfaceOptions& options,

@@ -18,9 +18,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// A smaller gain than this part of the error is none.
-constexpr double kGain = 1e-3;
-
 double farthest(const Point& center, std::span<const Point> points) {
     double square = 0.0;
     for (const Point& p : points) {
@@ -58,7 +55,7 @@ Ball fitted(Ball ball, std::span<const Point> points, const Solid& solid) {
             const Point center = ball.center + std::min(step, 0.99 * ball.radius) * direction;
             const double reach = farthest(center, points);
             // What the radius has to be at least; it changes by no more than the step.
-            const double needed = reach - error + kGain * step;
+            const double needed = reach - error + kNegligible * step;
             if (needed > ball.radius + step || (needed > 0.0 && solid.nearest(center, needed))) {
                 continue;
             }
@@ -195,7 +192,7 @@ Placement settled(Placement placement, std::span<const Point> points, const Soli
             }
         }
         const double before = std::exchange(placement, std::move(next)).error;
-        if (placement.error > before - 0.1 * kGain * std::abs(before) && round > 1) {
+        if (placement.error > before - 0.1 * kNegligible * std::abs(before) && round > 1) {
             break;
         }
     }
@@ -249,7 +246,7 @@ Placement improved(Placement placement, std::span<const Point> points, std::span
             }
         }
         next = settled(std::move(next), points, solid, has_changed, kRounds);
-        if (next.error < (1.0 - kGain) * placement.error) {
+        if (next.error < (1.0 - kNegligible) * placement.error) {
             placement = std::move(next);
             failures = 0;
         } else {

@@ -29,23 +29,23 @@
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "sampling/questions.hpp"
+#include "uses/ascent.hpp"
+#include "uses/boundary_ahead.hpp"
 #include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kSkeletonStage = "skeleton";
-constexpr double kDefaultSpacing = 0.01;  // of the diagonal
-constexpr double kSheetFactor = 0.55;     // of the half width of a sheet that a curve sticks out of; 0.41 in a square
-constexpr double kWideFactor = 2.0;       // of the radius: half the width of a wide sheet
-constexpr double kLeastRise = 0.35;       // of the erosion thickness along a branch; 0.29 in a corner of 90°
-constexpr double kLeastLimbRise = 0.45;   // the same at the end of a limb; 0.42 in a corner of a box
-constexpr double kMissedRidge = 1.1;      // of what the ends of an edge tell: a ridge is inside; at 1.3 curves wave
-constexpr double kHairFactor = 0.05;      // of the radius of the fire at its parent: what is shorter is a hair
-constexpr double kLeastBlend = 0.25;      // of the same where no sheet is wide: limbs part there, as those of a V
-constexpr double kDeep = 0.5;             // of the radius: how far from the middle of a ball is still deep in it
-constexpr double kWindowFactor = 1.5;     // of the fire's disc: half the window of the smoothing
-constexpr double kWindowEdges = 4.0;      // of the mean length of edges: the least one
+constexpr double kWideFactor = 2.0;  // of the radius: half the width of a wide sheet
+constexpr double kLeastRise = 0.35;  // of the erosion thickness along a branch; 0.29 in a corner of 90°
+// Of the way: erosion thickness that rises less is no limb's, but that in a corner of a box (0.42), or of a square
+// sheet (0.41 of half its width).
+constexpr double kLeastLimbRise = 0.45;
+// Of a disc along another curve, where no sheet is wide: limbs part there, as those of a V.
+constexpr double kLeastBlend = 0.25;
+// Of the fire's disc, or of the mean length of edges: half the window of the smoothing.
+constexpr double kWindowFactor = 1.5;
 
 // A complex with the times of the fire in its sheets.
 struct Burnt {
@@ -61,7 +61,8 @@ struct Burnt {
 Burnt burnt_sheets(const MedialComplex& given) {
     BurntComplex burnt = burnt_complex(given);
     const auto is_missed = [](const RidgeCrossing& crossing) {
-        return crossing.thickness > kMissedRidge * std::ranges::max(crossing.end_thickness);
+        // With 1.3 times of what the ends tell curves wave.
+        return crossing.thickness > (1.0 + kRadiusError) * std::ranges::max(crossing.end_thickness);
     };
     for (int round = 0; round < kMostCutRounds && cut(burnt, cuts_at_ridges(burnt, is_missed)); ++round) {
         // once more
@@ -113,7 +114,7 @@ double thickness_at(const Burnt& burnt, const BurntEdge& edge, Index tip) {
 bool tells_how_it_lies(const Burnt& burnt, const BurntEdge& last, Index tip, double significance) {
     const double path = burnt.vertex_paths[last.to];
     return path > kWideFactor * significance * burnt.radius(last.to) &&
-           thickness_at(burnt, last, tip) > kSheetFactor * path;
+           thickness_at(burnt, last, tip) > kLeastLimbRise * path;
 }
 
 using BurntCurve = std::vector<Index>;
@@ -161,11 +162,11 @@ Pruned pruned_curves(const Burnt& burnt, const Remainder& remainder, double sign
         std::ranges::reverse(curve);
         const Index tip = edges[curve.front()].from;
         // Hairs at the border of a sheet have small balls.
-        const double least = kHairFactor * significance * burnt.vertex_times[edges[last].to];
+        const double least = kSmallPart * significance * burnt.vertex_times[edges[last].to];
         const auto sticks_out = [&](Index i) {
             const Index v = edges[i].to;
             return thickness_at(burnt, edges[i], tip) >
-                   significance * burnt.radius(v) + std::max(kSheetFactor * burnt.vertex_paths[v], least);
+                   significance * burnt.radius(v) + std::max(kLeastLimbRise * burnt.vertex_paths[v], least);
         };
         auto first = std::ranges::find_if(curve, sticks_out);
         if (first == curve.end() && edges[last].next == kNone &&
@@ -269,7 +270,6 @@ class ChainWalk {
 // discs along the other curves at its junction, by its radius and by a part of theirs. \param chain from the tip to the
 // junction
 double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
-    constexpr double kNear = 2.0;  // discs whose centre is farther away, in their radii, cannot contain the tip
     const MedialComplex& complex = burnt.complex;
     const Index tip = chain.front();
     double least = kInfinity;
@@ -283,7 +283,7 @@ double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain
         least = std::min(least, excess - significance * (burnt.radius(tip) + part));
         for (const Index e : walk.edges_at(v)) {
             const Index next = other_end(complex.edges[e], v);
-            if ((i == 0 || way < kNear * burnt.vertex_times[v]) && is_seen.insert(next).second) {
+            if ((i == 0 || way < kMostRadii * burnt.vertex_times[v]) && is_seen.insert(next).second) {
                 seen.push_back(next);
             }
         }
@@ -415,7 +415,7 @@ SmoothChain smoothed(const Burnt& burnt, const Chain& chain, bool is_loop) {
         length += i > 0 ? distance(vertices[chain[i - 1]], vertices[chain[i]]) : 0.0;
         points.push_back({length, vertices[chain[i]]});
     }
-    const double least_window = kWindowEdges * length / static_cast<double>(count - 1);
+    const double least_window = kWindowFactor * length / static_cast<double>(count - 1);
     SmoothChain result;
     for (const Index v : chain) {
         const double window = kWindowFactor * burnt.vertex_times[v];
@@ -519,7 +519,7 @@ class Assembly {
         }
     }
 
-    // Junctions deep within each other's balls become one.
+    // Junctions nearby, deep within each other's balls, become one.
     void join_junctions() {
         std::vector<std::tuple<double, std::size_t>> short_chains;
         for (std::size_t c = 0; c < chains_.size(); ++c) {
@@ -527,7 +527,7 @@ class Assembly {
             const Index b = chains_[c].back();
             const double length = distance(burnt_.complex.vertices[a], burnt_.complex.vertices[b]);
             if (walk_.is_junction(a) && walk_.is_junction(b) &&
-                length < kDeep * std::min(burnt_.radius(a), burnt_.radius(b))) {
+                length < kNearby * std::min(burnt_.radius(a), burnt_.radius(b))) {
                 short_chains.emplace_back(length, c);
             }
         }
@@ -680,7 +680,7 @@ class Assembly {
             [&](std::size_t n) {
                 const auto& [target, source] = places_[n];
                 const Point& start = burnt_.complex.vertices[source];
-                const double least = (1.0 - kDeep) * burnt_.complex.radii[source];
+                const double least = (1.0 - kNearby) * burnt_.complex.radii[source];
                 for (double part = 1.0; part > 0.1; part *= 0.5) {
                     const Point p = start + part * (target - start);
                     if (const auto radius = radius_at_(p); radius && *radius >= least) {
@@ -770,10 +770,9 @@ class Assembly {
 // of the solid do not count.
 double mean_radius(const Solid& solid, const Point& p, const Point& direction, double inscribed) {
     constexpr int kWays = 32;
-    constexpr double kReach = 3.0;  // inscribed radii
     double sum = 0.0;
     double count = 0.0;
-    for (const double way : ways_out(solid, p, direction, kWays, std::array{kReach * inscribed})) {
+    for (const double way : ways_out(solid, p, direction, kWays, std::array{kMostRadii * inscribed})) {
         if (way != kInfinity) {
             sum += way;
             count += 1.0;
@@ -809,7 +808,7 @@ double spacing_of(const SkeletonOptions& options, const MedialComplex& complex) 
     if (options.spacing > 0.0) {
         return options.spacing;
     }
-    return kDefaultSpacing * box_of_balls(complex).diagonal();
+    return kDefaultTolerance * box_of_balls(complex).diagonal();
 }
 
 Skeleton skeleton_with(const MedialComplex& complex, const RadiusAt& radius_at, const SkeletonOptions& options,

@@ -17,6 +17,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/triangulated.hpp"
+#include "axis/stages/stages.hpp"
 #include "base/angles.hpp"
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
@@ -34,15 +35,6 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 constexpr std::string_view kThicknessStage = "thickness";
-
-// Balls that reach a point of the surface by growing as little as this more than the first one do touch it there: in
-// re-entrant edges many balls touch. Where the radius changes by m along the axis, what is found is off by up to
-// m sqrt(2 kTouching).
-constexpr double kTouching = 2e-5;
-
-// Of the diagonal: by how much all balls are larger where it is asked by which factor they must grow. On the tip of a
-// knife the balls are points, which no factor makes larger.
-constexpr double kInflation = 1e-4;
 
 constexpr std::size_t kPointsAtOnce = 256;
 
@@ -198,10 +190,12 @@ void check_options(const ThicknessOptions& options) {
             "the angle between contacts must lie between 0 and 180 degrees, and be less than 180");
 }
 
-// Of the balls that touch the surface at a point the largest. \param limit of growth, more than the least one
+// Of the balls that touch the surface at a point, within rounding, the largest: in re-entrant edges many touch. Where
+// the radius changes by m along the axis, what is found is off by up to m sqrt(2 kFileRounding). \param limit of
+// growth, more than the least one
 Ball touching_ball(const SlabTree& tree, const Point& p, double limit) {
     const GrownBall least = least_grown_slab(tree, p, limit);
-    const auto largest = largest_slab_ball(tree, p, (1.0 + kTouching) * least.growth);
+    const auto largest = largest_slab_ball(tree, p, (1.0 + kFileRounding) * least.growth);
     return largest.value_or(least.ball);
 }
 
@@ -394,7 +388,8 @@ class BallPainter {
 class ThicknessData {
    public:
     ThicknessData(MedialComplex complex, double angle) : slope_(cosine_of_degrees(0.5 * angle)) {
-        inflation_ = kInflation * box_of_balls(complex).diagonal();
+        // On the tip of a knife the balls are points, which no factor makes larger.
+        inflation_ = kSmallLength * box_of_balls(complex).diagonal();
         const Slabs slabs = sorted_slabs(complex, angle);
         all_ = build_slab_tree(inflated(slabs.all, inflation_));
         if (angle > 0.0 && !slabs.between.empty()) {

@@ -10,9 +10,6 @@
 
 namespace scaleaxis::inline v1 {
 
-/// Growth that is none: of a radius along the way, or, of the radius itself, in a step that is not worth taking.
-inline constexpr double kNoGrowth = 1e-3;
-
 /// Moves the centre of a ball to where the distance from the boundary grows fastest, for as long as it grows by more
 /// than `slope` times the way, and returns the largest ball around that place. A ball whose contacts are 2a apart, as
 /// seen from its centre, grows by cos(a): so balls leave convex edges and corners, and stay between opposite sides.

@@ -27,12 +27,10 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kMostWidth = 0.5;      // tolerances: as far as balls of a union are off
-constexpr double kMostRoom = 2.0 / 3;   // tolerances: on either side as far as balls of a union are inside the solid
-constexpr double kMostOfRadius = 0.25;  // what is narrower beside its balls, none between its sides tells from a seam
-constexpr double kMostEdge = 20.0;      // widths: as long as the edges of seams, on which contractions leave their ends
+constexpr double kMostWidth = 0.5;     // tolerances: as far as balls of a union are off
+constexpr double kMostRoom = 2.0 / 3;  // tolerances: on either side as far as balls of a union are inside the solid
+constexpr double kMostEdge = 20.0;     // widths: as long as the edges of seams, on which contractions leave their ends
 
-constexpr double kMostGap = 1.0;  // tolerances: with half of that four seams in ten stay open that end too early
 // Cosine of the angle, 130 degrees, below which the sides of a seam's end are two sheets. In the corner of a box all
 // three meet at 120; with 150 sheets of smooth shapes fall apart where a branch ends on them.
 constexpr double kTurn = -0.643;
@@ -84,8 +82,9 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
                     const double length = distance(complex.vertices[p], complex.vertices[q]);
                     const double radius = 0.5 * (complex.radii[p] + complex.radii[q]);
                     outline.push_back(e);
+                    // None of the balls between the sides of what is narrower tells it from a seam.
                     perimeter += length;
-                    most += length * std::min(kMostWidth * tolerance, kMostOfRadius * radius);
+                    most += length * std::min(kMostWidth * tolerance, kNearby * radius);
                 }
             }
         }
@@ -636,7 +635,8 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
 }
 
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {
-    const std::vector<double> reaches(complex.vertices.size(), kMostGap * tolerance);
+    // With half of the tolerance four seams in ten stay open that end too early.
+    const std::vector<double> reaches(complex.vertices.size(), tolerance);
     return with_seams_to_borders(std::move(complex), reaches);
 }
 

@@ -16,15 +16,9 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kBladeCosine = -0.97;  // of the normals: thinner wedges cannot be told from thin walls
-
 // The search for an edge: points ever nearer to it.
 constexpr std::array kAside{0.02, 0.1, 0.5, 1.0};  // of the radius: how far from one contact to go to find the next one
-constexpr double kApproach = 0.7;                  // of the way to the edge: the rest of it after each step
-constexpr double kLeastPart = 0.8;                 // of the radius expected after a step: something else is in the way
 constexpr int kMaxSteps = 10;
-constexpr double kAccuracy = 1e-3;   // of the way to the edge: the last change, and the boundary's distance from it
-constexpr double kConverged = 1e-7;  // of the way to the edge: after such a change no step brings anything new
 
 struct Plane {
     Point normal;
@@ -40,7 +34,6 @@ struct Search {
     Point start;
     Point at;
     double radius = 0.0;
-    double expected = 0.0;  // the radius, from the step before
     std::array<Plane, 3> planes{};
     Crease crease;
     bool is_active = true;
@@ -56,14 +49,11 @@ Point on_both(const Plane& a, const Plane& b, const Point& p) {
     return p + ((da - cosine * db) / determinant) * a.normal + ((db - cosine * da) / determinant) * b.normal;
 }
 
-std::optional<Point> on_all(const std::array<Plane, 3>& planes, const Point& p) {
+// Far away if they are nearly parallel to a line.
+Point on_all(const std::array<Plane, 3>& planes, const Point& p) {
     const auto& [a, b, c] = planes;
     const Point bc = cross(b.normal, c.normal);
     const double determinant = dot(a.normal, bc);
-    constexpr double kLeastDeterminant = 0.05;
-    if (std::abs(determinant) < kLeastDeterminant) {
-        return std::nullopt;
-    }
     return p + (1.0 / determinant) *
                    (a.from(p) * bc + b.from(p) * cross(c.normal, a.normal) + c.from(p) * cross(a.normal, b.normal));
 }
@@ -85,7 +75,7 @@ class CreaseSearch {
         }
         for (int step = 0; step < kMaxSteps; ++step) {
             stop_if_cancelled();
-            find_planes();
+            find_planes(step == 0);
             for_each_active([&](Search& search) { approach(search, step); });
         }
         check_places();
@@ -140,25 +130,21 @@ class CreaseSearch {
     }
 
     // The tangent planes of the contacts: the nearest point, and those that are nearest from a little aside.
-    void find_planes() {
+    void find_planes(bool is_first) {
         ask([](const Search&) { return true; },
-            [](const Search& search) {
-                const bool is_first = search.expected == 0.0;
+            [&](const Search& search) {
                 return is_first ? Question{search.at} : question_near(search.at, search.planes[0].point);
             },
             [&](Search& search, const Point& p, const Point& nearest) {
                 search.planes[0] = tangent_plane(p, nearest);
                 search.radius = distance(p, nearest);
-                // The edge is on the plane, which is no nearer than the contact.
-                if (!(search.radius > 0.0 && search.radius >= kLeastPart * search.expected &&
-                      search.radius <= reach_)) {
+                if (!(search.radius > 0.0 && search.radius <= reach_)) {
                     search.is_active = false;
                     search.is_found = false;
                 }
             });
         const auto is_second = [&](const Search& search) {
-            const double cosine = dot(search.planes[0].normal, search.planes[1].normal);
-            return kBladeCosine < cosine && cosine < most_cosine_;
+            return dot(search.planes[0].normal, search.planes[1].normal) < most_cosine_;
         };
         find_plane(
             1, [](const Search& search) { return search.planes[0].normal; }, is_second);
@@ -199,22 +185,18 @@ class CreaseSearch {
 
     void approach(Search& search, int step) const {
         const auto& [a, b, c] = search.planes;
-        std::optional<Point> place = on_both(a, b, search.at);
-        if (wants_corners_) {
-            place = on_all(search.planes, search.at);
-        }
-        if (!place || !(distance(*place, search.start) <= reach_)) {
+        const Point place = wants_corners_ ? on_all(search.planes, search.at) : on_both(a, b, search.at);
+        const double way = distance(place, search.start);
+        if (!(way <= reach_)) {
             search.is_active = false;
             search.is_found = false;
             return;
         }
-        const double way = distance(*place, search.start);
-        const double change = step == 0 ? way : distance(*place, search.crease.place);
-        search.crease = {*place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)), {a.normal, b.normal}};
-        search.at = *place + kApproach * (search.at - *place);
-        search.expected = kApproach * search.radius;
-        search.is_found = change <= kAccuracy * way;
-        search.is_active = change > kConverged * way;
+        const double change = step == 0 ? way : distance(place, search.crease.place);
+        search.crease = {place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)), {a.normal, b.normal}};
+        search.at = place + kApproach * (search.at - place);
+        search.is_found = change <= kNegligible * way;
+        search.is_active = change > kFileRounding * way;
     }
 
     // On a convex edge the solid ends: it is entered a little before, and left a little behind.
@@ -224,7 +206,7 @@ class CreaseSearch {
         for (Search& search : searches_) {
             if (search.is_found) {
                 const Point& place = search.crease.place;
-                const Point little = kAccuracy * (place - search.start);
+                const Point little = kNegligible * (place - search.start);
                 found.push_back(&search);
                 append(points, {place - little, place + little});
             }

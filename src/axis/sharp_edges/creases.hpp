@@ -18,8 +18,8 @@ namespace scaleaxis::inline v1 {
 /// Tolerances: how far from a point its edge may be.
 inline constexpr double kCreaseReach = 8.0;
 
-/// Of the way from an edge to a ball that sees it: from where the same edge is looked at farther on.
-inline constexpr double kAsideOfEdge = 0.3;
+/// Of the way from an edge to a point that sees it: from where it is looked at next, more closely or farther on.
+inline constexpr double kApproach = 0.7;
 
 /// A place on a sharp edge.
 struct Crease {

@@ -13,9 +13,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Cosine of the angle between two segments from which on their common end is a corner.
-const double kTurn = cosine_of_degrees(40.0);
-
 void add_point(EdgeLine& line, const Point& p, const std::array<Point, 2>& normals) {
     line.positions.push_back(line.length() + distance(line.points.back(), p));
     line.points.push_back(p);
@@ -38,10 +35,11 @@ std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges) {
         }
     });
     const auto other_end = [&](Index e, Index v) { return places[2 * e] == v ? places[2 * e + 1] : places[2 * e]; };
+    const double least_cosine = cosine_of_degrees(kLeastAngle);
     const auto is_end = [&](Index v) {
         const std::span<const Index> at = edges_at[v];
         return at.size() != 2 || dot(unit(points[v] - points[other_end(at[0], v)]),
-                                     unit(points[other_end(at[1], v)] - points[v])) < kTurn;
+                                     unit(points[other_end(at[1], v)] - points[v])) < least_cosine;
     };
     std::vector<std::uint8_t> is_used(edges.size());
     std::vector<EdgeLine> lines;

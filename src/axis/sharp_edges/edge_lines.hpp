@@ -14,6 +14,12 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Degrees: edges of the solid are sharp from this angle between their normals on, and bends of a line corners.
+inline constexpr double kLeastAngle = 40.0;
+
+/// Tolerances: how far lines and corners may be from the edges that they stand for.
+inline constexpr double kEdgeAccuracy = 0.01;
+
 /// A line of several parts, with the normals on both sides of each.
 struct EdgeLine {
     std::vector<Point> points;  // of a closed line the last one is the first
@@ -30,9 +36,6 @@ std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges);
 
 /// The nearest point on a line of several parts, and how far along it that is.
 std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p);
-
-/// Tolerances: how far a line may be from the pieces between its places.
-inline constexpr double kLineSag = 0.01;
 
 /// The part of a line between two positions, in pieces no longer than `step`; of a closed one `to` may be larger than
 /// its length. Points of the line from which its pieces stay within `sag` are left out.

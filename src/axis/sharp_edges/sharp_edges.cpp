@@ -28,23 +28,12 @@ namespace {
 
 constexpr std::string_view kSharpEdgesStage = "sharp edges";
 
-// Degrees. Sheets of less than the second are mostly filtered, and lines may be those of rough surfaces.
-constexpr double kLeastAngle = 40.0;
-constexpr double kClearAngle = 60.0;
-constexpr double kLeastLine = 1.0;       // tolerances: shorter lines are those of rough surfaces
-constexpr double kLeastFaintLine = 8.0;  // the same for lines that are not clear
-
-// Across from an edge, how far the surface may be from the plane there, in tolerances, and in how many of its places.
-constexpr double kAcross = 0.75;
-constexpr double kMostRise = 0.03;
-constexpr double kLeastFlat = 0.8;
-
-// Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface?
+// Do plane faces, or those of cylinders and cones, meet in a line, and not a rough surface? In most of its places the
+// surface a tolerance across from it is on the planes there.
 bool is_flat(const EdgeLine& line, const Solid& solid, double tolerance) {
     // Across from its ends a face ends, too, in acute corners. What is left has two places at least.
-    const double ends =
-        line.is_closed() ? 0.0 : std::clamp(0.5 * line.length() - kLeastLine * tolerance, 0.0, kAcross * tolerance);
-    const EdgeLine part = section_of(line, ends, line.length() - ends, tolerance, kLineSag * tolerance);
+    const double ends = line.is_closed() ? 0.0 : std::clamp(0.5 * line.length() - tolerance, 0.0, tolerance);
+    const EdgeLine part = section_of(line, ends, line.length() - ends, tolerance, kEdgeAccuracy * tolerance);
     std::vector<Point> points;  // two beside each place
     for (std::size_t k = 1; k < part.points.size(); ++k) {
         const Point place = midpoint(part.points[k - 1], part.points[k]);
@@ -53,16 +42,16 @@ bool is_flat(const EdgeLine& line, const Solid& solid, double tolerance) {
         for (const auto& [normal, other] : {std::pair(a, b), std::pair(b, a)}) {
             const Point across = cross(normal, direction);
             const double sign = dot(across, other) < 0.0 ? 1.0 : -1.0;
-            points.push_back(place + (sign * kAcross * tolerance) * across);
+            points.push_back(place + (sign * tolerance) * across);
         }
     }
-    const std::vector<double> bounds(points.size(), kMostRise * tolerance);
+    const std::vector<double> bounds(points.size(), kEdgeAccuracy * tolerance);
     const std::vector<std::optional<Point>> nearest = nearest_of(solid, points, bounds);
-    std::size_t flat = 0;
+    std::ptrdiff_t more = 0;  // of its places are flat than are not
     for (std::size_t k = 0; k < nearest.size(); k += 2) {
-        flat += nearest[k] && nearest[k + 1] ? 1 : 0;
+        more += nearest[k] && nearest[k + 1] ? 1 : -1;
     }
-    return 2.0 * static_cast<double>(flat) >= kLeastFlat * static_cast<double>(nearest.size());
+    return more >= 0;
 }
 
 // The edges whose sheets growing has left.
@@ -74,18 +63,6 @@ std::vector<EdgeLine> lines_among(std::vector<SharpEdge> edges, const SharpEdgeO
         return options.scale * growth >= 1.0;
     });
     return edge_lines(edges);
-}
-
-// Those of the solid's own edges that are not the creases of a rough surface.
-std::vector<EdgeLine> clear_lines(std::vector<EdgeLine> lines, double tolerance) {
-    const auto is_clear = [](const std::array<Point, 2>& normals) {
-        return angle_between(normals[0], normals[1]) >= kClearAngle;
-    };
-    std::erase_if(lines, [&](const EdgeLine& line) {
-        const double least = std::ranges::all_of(line.normals, is_clear) ? kLeastLine : kLeastFaintLine;
-        return line.length() < least * tolerance;
-    });
-    return lines;
 }
 
 void validate(const SharpEdgeOptions& options) {
@@ -105,7 +82,9 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
         SharpComplex result{std::move(complex), {}};
         std::vector<EdgeLine> lines;
         if (std::optional<std::vector<SharpEdge>> edges = solid.sharp_edges(std::max(options.angle, kLeastAngle))) {
-            lines = clear_lines(lines_among(std::move(*edges), options), options.tolerance);
+            lines = lines_among(std::move(*edges), options);
+            // Shorter ones are those of rough surfaces.
+            std::erase_if(lines, [&](const EdgeLine& line) { return line.length() < options.tolerance; });
             for (const EdgeLine& line : lines) {
                 result.statistics.known += line.length();
             }

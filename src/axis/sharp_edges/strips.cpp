@@ -116,7 +116,7 @@ class Strips {
                 const auto end_of = [&](int k) {
                     return line.is_closed() || k % count != 0 ? next_end + k % count : line.ends[k == 0 ? 0 : 1];
                 };
-                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kLineSag * tolerance_),
+                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kEdgeAccuracy * tolerance_),
                                  {end_of(i), end_of(i + 1)}});
             }
             next_end += count;

@@ -14,6 +14,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/sharp_edges/creases.hpp"
+#include "axis/sharp_edges/edge_lines.hpp"
 #include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -24,17 +25,11 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // Lengths are in tolerances.
-constexpr double kStep = 0.9;         // along an edge: two ends that step towards each other must not pass
-constexpr double kLeastApart = 0.5;   // places that are nearer to each other say the same
-constexpr double kLinkReach = 2.0;    // so far ahead the next place of an edge may be
-constexpr double kBlindReach = 4.0;   // the same across what cannot be seen
-constexpr double kSameCorner = 0.01;  // corners found from different edges, whose planes are tangents near them
+// Along an edge, from place to place; nearer ones say the same. With 1 two ends that step towards each other pass.
+constexpr double kStep = 0.9;
+constexpr double kLinkReach = 2.0;  // so far ahead the next place of an edge may be
 constexpr double kBeyondPlace =
     0.05;  // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
-
-// Cosine of the angle between an edge and the way to its next place: a rim of a radius of two tolerances turns by less,
-// and an edge beside it that is as far as the step is not in the way.
-const double kAhead = cosine_of_degrees(25.0);
 
 // A ball beside an edge sees its faces at the angle of their normals, but for what the union is off: of a hundred balls
 // beside the edges of boxes, prisms and cylinders one to five see less than this part of it, and those next to them
@@ -78,7 +73,7 @@ class Tracing {
         for (std::size_t i = 0; i < places.size(); ++i) {
             if (is_near[i] == 0) {
                 nodes_.push_back({*creases[found[i]], points[found[i]]});
-                for_each_point_near(tree, places[i], kLeastApart * options_.tolerance,
+                for_each_point_near(tree, places[i], kStep * options_.tolerance,
                                     [&](Index at, double) { is_near[tree.order[at]] = 1; });
             }
         }
@@ -89,7 +84,7 @@ class Tracing {
                 break;
             }
         }
-        link(kBlindReach);
+        link(kCreaseReach);
         meet();
         return edges();
     }
@@ -146,14 +141,15 @@ class Tracing {
 
     bool is_ahead(Index i, int side, const Point& place) const {
         const Point way = place - nodes_[i].crease.place;
-        return dot(way, nodes_[i].towards(side)) >= kAhead * norm(way);
+        return dot(way, nodes_[i].towards(side)) >= kSameDirection * norm(way);
     }
 
     // Near a corner another edge may be what is seen.
     bool goes_on_to(const Crease& crease, Index i, int side) const {
         return is_ahead(i, side, crease.place) &&
                distance(crease.place, nodes_[i].crease.place) <= kLinkReach * options_.tolerance &&
-               (norm(crease.direction) == 0.0 || std::abs(dot(crease.direction, nodes_[i].crease.direction)) >= kAhead);
+               (norm(crease.direction) == 0.0 ||
+                std::abs(dot(crease.direction, nodes_[i].crease.direction)) >= kSameDirection);
     }
 
     struct End {
@@ -180,7 +176,7 @@ class Tracing {
         std::vector<Point> points;
         for (const auto& [i, side] : ends) {
             const Node& node = nodes_[i];
-            points.push_back(node.crease.place + kAsideOfEdge * (node.inside - node.crease.place) +
+            points.push_back(node.crease.place + kApproach * (node.inside - node.crease.place) +
                              (steps * kStep * options_.tolerance) * node.towards(side));
         }
         std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
@@ -262,7 +258,7 @@ class Tracing {
 
     // Is a place ahead of an end, or right there, on its line, with the edge in between?
     bool leads_to(const End& end, const Point& place) const {
-        const double accuracy = kSameCorner * options_.tolerance;
+        const double accuracy = kEdgeAccuracy * options_.tolerance;
         const Node& node = nodes_[end.node];
         const Point way = place - node.crease.place;
         return norm(way) <= kCreaseReach * options_.tolerance && dot(way, node.towards(end.side)) >= -accuracy &&
@@ -273,14 +269,14 @@ class Tracing {
     // Is a place on the line of an edge still on the edge?
     bool is_convex_at(const Point& place, const Node& node) const {
         const auto& [a, b] = node.crease.normals;
-        const Point little = (kSameCorner * options_.tolerance) * unit(a + b);
+        const Point little = (kEdgeAccuracy * options_.tolerance) * unit(a + b);
         return solid_.inside(place - little) && !solid_.inside(place + little);
     }
 
     // Where two edges come as near to each other as places of a corner are, if not in parallel.
     std::optional<Point> meeting_of(const Crease& a, const Crease& b) const {
         const double cosine = dot(a.direction, b.direction);
-        if (std::abs(cosine) >= kAhead) {
+        if (std::abs(cosine) >= kSameDirection) {
             return std::nullopt;
         }
         const Point way = b.place - a.place;
@@ -289,13 +285,13 @@ class Tracing {
         const double along_b = dot(way, b.direction);
         const Point on_a = a.place + ((along_a - cosine * along_b) / determinant) * a.direction;
         const Point on_b = b.place + ((cosine * along_a - along_b) / determinant) * b.direction;
-        return distance(on_a, on_b) <= kSameCorner * options_.tolerance ? std::optional(midpoint(on_a, on_b))
-                                                                        : std::nullopt;
+        return distance(on_a, on_b) <= kEdgeAccuracy * options_.tolerance ? std::optional(midpoint(on_a, on_b))
+                                                                          : std::nullopt;
     }
 
     Index corner_at(const Point& place) {
         for (const Index corner : corners_) {
-            if (distance(nodes_[corner].crease.place, place) <= kSameCorner * options_.tolerance) {
+            if (distance(nodes_[corner].crease.place, place) <= kEdgeAccuracy * options_.tolerance) {
                 return corner;
             }
         }
@@ -308,7 +304,7 @@ class Tracing {
     const Point& place_of(Index i) const {
         for (const Index next : nodes_[i].next) {
             if (next != kNone && nodes_[next].is_corner() &&
-                distance(nodes_[i].crease.place, nodes_[next].crease.place) <= kSameCorner * options_.tolerance) {
+                distance(nodes_[i].crease.place, nodes_[next].crease.place) <= kEdgeAccuracy * options_.tolerance) {
                 return nodes_[next].crease.place;
             }
         }

@@ -35,7 +35,8 @@ namespace {
 
 constexpr std::string_view kCenteringStage = "centering";
 
-// Contacts that are seen at less than this angle from each other count as one.
+// Contacts that are seen at less than this angle from each other count as one. At 26 degrees envelopes are
+// off by up to a twenty-fifth more.
 const double kSamePlaneDirection = cosine_of_degrees(10.0);
 constexpr std::size_t kMostDirections = 12;
 
@@ -45,30 +46,15 @@ constexpr int kDirectionsOfCurve = 8;
 // How far from a contact the solid is asked for its tangent plane there, as a part of the radius.
 constexpr double kDepth = 0.2;
 
-// A plane is one of a contact if its normal is not farther than this from the direction of the contact.
-const double kSameSide = cosine_of_degrees(45.0);
-
-// Steps of a move; a step shorter than this part of the tolerance is the last.
+// Steps of a move.
 constexpr int kSteps = 3;
-constexpr double kSettledMove = 1e-4;
 
-// Of the tolerance: a ball that has become smaller by more on the way will not grow again. In a junction of several
-// sheets one by less may.
-constexpr double kHopeless = 1e-3;
-
-// Of the tolerance: balls that stick out of the solid by more are to do so. The perturbation of the balls of a union,
-// and rounding, are less.
-constexpr double kMostShrinking = 0.1;
-
-// Edges are halved where balls in between are farther from touching the solid, in tolerances: half of it takes four
-// times as many new vertices and brings the envelope nearer to the solid by a hundredth, twice of it is as much as the
-// balls themselves are allowed. How often.
+// Balls that are farther from touching the solid do not touch it, in tolerances. Those of a union that stick out by
+// more are to do so: their perturbation, and rounding, are less. Edges are halved where balls in between are: half of
+// it takes four times as many new vertices and brings the envelope nearer to the solid by a hundredth, twice of it is
+// as much as the balls themselves are allowed. How often.
 constexpr double kFaceError = 0.1;
 constexpr int kMostCenteringRounds = 4;
-
-// Of the distance from the boundary: what is nearer than this is on the same side. Less than all of it, since solids
-// that find the nearest point by a local search may miss a nearer one.
-constexpr double kSureReach = 0.5;
 
 // Progress is reported this often.
 constexpr std::size_t kBlocksOfProgress = 16;
@@ -208,13 +194,14 @@ struct FirstContact {
     Point place;
 };
 
-// Which of these vertices lie in the solid. Where an edge is shorter than the way to the boundary from one of its ends,
-// both lie on the same side: one vertex is asked for in place of all that are joined by such edges.
+// Which of these vertices lie in the solid. Where one end of an edge is nearby the other, beside its distance from the
+// boundary, both lie on the same side: one vertex is asked for in place of all that are joined by such edges. Not all
+// of that distance is taken, since solids that find the nearest point by a local search may miss a nearer one.
 std::vector<FirstContact> in_solid(const MedialComplex& complex, const std::vector<FirstContact>& contacts,
                                    const Solid& solid) {
     std::vector<double> reaches(complex.vertices.size());
     for (const auto& [v, place] : contacts) {
-        reaches[v] = kSureReach * distance(complex.vertices[v], place);
+        reaches[v] = kNearby * distance(complex.vertices[v], place);
     }
     DisjointSets sets(complex.vertices.size());
     for (const auto& [a, b] : complex.edges) {
@@ -253,7 +240,7 @@ std::vector<FirstContact> first_contacts(const MedialComplex& complex, std::span
     for (std::size_t i = 0; i < vertices.size(); ++i) {
         if (nearest[i]) {
             const double growth = distance(centers[i], *nearest[i]) - complex.radii[vertices[i]];
-            if (growth >= -kMostShrinking * tolerance && growth <= tolerance) {
+            if (growth >= -kFaceError * tolerance && growth <= tolerance) {
                 contacts.push_back({vertices[i], *nearest[i]});
             }
         }
@@ -394,7 +381,7 @@ class CenteringBatch {
         const Point way = *contact.place - vertex.center;
         const Point normal = contact.is_on_plane(vertex.center) ? contact.normal() : unit(way);
         const double height = dot(normal, way);
-        if (dot(normal, contact.direction) > kSameSide && std::abs(height - vertex.radius) <= tolerance_) {
+        if (dot(normal, contact.direction) > 0.0 && std::abs(height - vertex.radius) <= tolerance_) {
             vertex.planes.push_back({normal, height});
         }
     }
@@ -430,23 +417,25 @@ class CenteringBatch {
         for (auto& [normal, height] : vertex.planes) {
             height -= dot(normal, way);
         }
-        vertex.is_moving = !stays(vertex) && (has_nearer_contact(vertex) || norm(way) > kSettledMove * tolerance_);
+        vertex.is_moving = !stays(vertex);
+        if (vertex.is_moving) {
+            add_nearer_contact(vertex);
+        }
     }
 
-    // Does something of the boundary lie before all of these planes? Then it is a contact, too: where sheets meet,
-    // those of the faces at a vertex need not tell of it.
-    static bool has_nearer_contact(Centering& vertex) {
+    // Where something of the boundary lies before all of these planes, it is a contact, too: where sheets meet, those
+    // of the faces at a vertex need not tell of it.
+    static void add_nearer_contact(Centering& vertex) {
         const Point way = vertex.nearest_place(vertex.center) - vertex.center;
-        const std::size_t known = vertex.directions.size();
         if (std::ranges::all_of(vertex.planes, [&](const ContactPlane& plane) { return norm(way) < plane.distance; })) {
             add_direction(vertex.directions, unit(way));
         }
-        return vertex.directions.size() > known;
     }
 
-    // Where the ball has become smaller on the way, the vertex goes back.
+    // Where the ball has become smaller on the way, the vertex goes back: it will not grow again, unless by little, in
+    // a junction of several sheets.
     bool stays(Centering& vertex) const {
-        const double slack = vertex.is_foot ? tolerance_ : kHopeless * tolerance_;
+        const double slack = vertex.is_foot ? tolerance_ : kNegligible * tolerance_;
         const bool is_smaller = !(vertex.reach(vertex.center) > vertex.radius - slack);
         if (is_smaller) {
             vertex.center = complex_.vertices[vertex.vertex];

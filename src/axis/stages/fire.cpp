@@ -174,7 +174,8 @@ class Burning {
         const auto at = may_dip ? deepest_dip(from.radius, to.radius, square) : std::nullopt;
         const Ball between{from.center + at.value_or(0.0) * (to.center - from.center),
                            radius_between(from.radius, to.radius, square, at.value_or(0.0))};
-        if (at && std::lerp(from.radius, to.radius, *at) - between.radius > tolerance_) {
+        const double dip = std::lerp(from.radius, to.radius, at.value_or(0.0)) - between.radius;
+        if (at && dip > std::max(tolerance_, kNegligible * std::max(from.radius, to.radius))) {
             add_fronts(from, between, ends, sheet, true);
             add_fronts(between, to, ends, sheet, true);
             return;

@@ -20,7 +20,6 @@ constexpr int kMostHalvings = 6;
 constexpr double kMostRefitGrowth =
     3.0;                       // so many times the vertices of the result may be needed before edges collapse
 constexpr double kHalf = 0.5;  // of the error: how far from touching balls may be; edges collapse within the rest
-constexpr double kMostHalved = 0.75;  // of the vertices: so many edges to halve at once take too many
 
 }  // namespace
 
@@ -38,9 +37,6 @@ std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid,
             complex = simplify(complex, {.error = error}, execution).complex;
             return std::ssize(complex.vertices) <= options.most_vertices ? std::optional(std::move(complex))
                                                                          : std::nullopt;
-        }
-        if (static_cast<double>(count) > kMostHalved * static_cast<double>(complex.vertices.size())) {
-            break;  // all is curved
         }
         complex = halved(complex, halving);
     }

@@ -18,7 +18,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr double kLeastSpan = 0.1;  // of the ways of the fire to the ends: a shorter edge says where the ridge is
 constexpr double kLeastRise =
     0.1;                        // of the length of an edge, of the burn time; half of it at a right angle to a ridge
 constexpr int kBisections = 6;  // to a hundredth of the edge
@@ -55,8 +54,7 @@ class RidgeCuts {
         }
         const double length = distance(complex.vertices[p], complex.vertices[q]);
         const double rise = kLeastRise * length;
-        if (length < kLeastSpan * (fire.sector_paths[at_p] + fire.sector_paths[at_q]) ||
-            0.5 * (length - std::abs(time_p - time_q)) < rise) {
+        if (0.5 * (length - std::abs(time_p - time_q)) < rise) {
             return std::nullopt;
         }
         double from = 0.0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis/stages/slab_quadric.hpp"
+#include "base/numbers.hpp"
 #include "spatial/mesh_parts.hpp"
 
 #include <Eigen/Cholesky>
@@ -8,15 +9,7 @@
 #include <cmath>
 
 namespace scaleaxis::inline v1 {
-namespace {
-
-// How much a unit of distance from the guess counts beside a plane of all the weight.
-constexpr double kPull = 1e-3;
-
-// Slabs steeper than this have unstable planes.
-constexpr double kLeastFlank = 0.02;
-
-}  // namespace
+namespace {}  // namespace
 
 void SlabQuadric::add_plane(const Point& normal, const Ball& ball, double plane_weight) {
     const Eigen::Vector4d n(normal.x, normal.y, normal.z, 1.0);
@@ -45,7 +38,8 @@ Ball SlabQuadric::least(const Ball& guess) const {
         return guess;
     }
     const Eigen::Vector4d x(guess.center.x, guess.center.y, guess.center.z, guess.radius);
-    const Eigen::Matrix4d pulled = a + kPull * weight * Eigen::Matrix4d::Identity();
+    // A unit of distance from the guess hardly counts beside a plane of all the weight.
+    const Eigen::Matrix4d pulled = a + kNegligible * weight * Eigen::Matrix4d::Identity();
     const Eigen::Vector4d step = pulled.ldlt().solve(-(a * x + b));
     const Eigen::Vector4d best = x + step;
     return {{best[0], best[1], best[2]}, std::max(0.0, best[3])};
@@ -54,7 +48,7 @@ Ball SlabQuadric::least(const Ball& guess) const {
 SlabQuadric quadric_of(const Slab& slab) {
     SlabQuadric quadric;
     const auto shape = shape_of(slab);
-    if (!shape || shape->flank < kLeastFlank) {
+    if (!shape || shape->flank < kLeastSine) {
         return quadric;
     }
     const auto& [a, b, c] = slab.corners;
@@ -81,7 +75,7 @@ SlabQuadric border_quadric(const Slab& slab) {
     const auto& [a, b, c] = slab.corners;
     const auto cone = shape_of(Slab(std::array{a, b}));
     const auto shape = shape_of(slab);
-    if (!cone || !shape || cone->flank < kLeastFlank) {
+    if (!cone || !shape || cone->flank < kLeastSine) {
         return quadric;
     }
     const Point direction = b.center - a.center;

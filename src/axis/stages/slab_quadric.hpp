@@ -29,6 +29,10 @@ struct SlabQuadric {
     Ball least(const Ball& guess) const;
 };
 
+/// Steeper slabs have unstable planes; and no triangle may become thinner (twice its area in squares of its longest
+/// side), unless it was.
+inline constexpr double kLeastSine = 0.02;
+
 /// The planes at both sides of a slab with three corners, or at four sides of a cone.
 SlabQuadric quadric_of(const Slab& slab);
 

@@ -22,16 +22,9 @@ namespace {
 constexpr double kSmoothingStep = 0.5;
 constexpr double kStepBack = -0.52;
 
-// Of the radius before, that a move must leave: a curve may turn back where a ball is largest.
-constexpr double kLeastKeptRadius = 0.9;
-
 // Degrees at which the balls meet that stand for the solid of a complex: what they lack between their centres is less
 // than 1 % of the radius.
 constexpr double kMeetingAngle = 165.0;
-
-// How far from those of the union linear radii may be around moved vertices of a complex alone, as a part of the
-// diagonal of its box: what `scale_axis` takes at its default δ, a fifth of that.
-constexpr double kSmoothingLinearPart = 0.002;
 
 // A vertex that can move, and its neighbours along the boundary of the sheet or the curve.
 struct Movable {
@@ -140,7 +133,8 @@ MedialComplex smooth(MedialComplex complex, const BallUnion& ball_union, const S
                 const Index v = movable[i].vertex;
                 const auto nearest = nearest_from_inside(interior, positions[v]);
                 const double radius = nearest ? nearest->distance / complex.scale : 0.0;
-                if (nearest && radius >= kLeastKeptRadius * complex.radii[v]) {
+                // A curve may turn back where a ball is largest.
+                if (nearest && radius >= (1.0 - kRadiusError) * complex.radii[v]) {
                     complex.vertices[v] = positions[v];
                     complex.radii[v] = radius;
                     complex.vertex_origins[v] = {VertexKind::kTouching};
@@ -159,7 +153,7 @@ MedialComplex smooth(MedialComplex complex, const SmoothOptions& options, const 
         return complex;
     }
     const BallUnion ball_union = grown_union(complex, {execution.threads, {}, execution.cancel});
-    const double length = kSmoothingLinearPart * box_of_balls(complex).diagonal();
+    const double length = kLeastDip * kDefaultTolerance * box_of_balls(complex).diagonal();
     return in_arena(execution, [&] {
         return smooth(linearized_around_borders(std::move(complex), length), ball_union, options, execution);
     });

@@ -23,8 +23,12 @@ namespace scaleaxis::inline v1 {
 /// exactly.
 inline constexpr double kClearlyWider = 0.5;
 
-/// Of the diagonal: the error where none is asked for, as of linear radii.
-inline constexpr double kSmallError = 1e-4;
+/// Of the diagonal: δ by default (`kDefaultDelta`), where a stage does not know it.
+inline constexpr double kDefaultTolerance = 0.01;
+
+/// Of the diagonal: a length that is small beside all parts of a solid. The error where none is asked for, as of linear
+/// radii, and the radius of balls that are points.
+inline constexpr double kSmallLength = 1e-4;
 
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
@@ -58,8 +62,8 @@ SimplifyStatistics compared(const MedialComplex& complex, const MedialComplex& s
 /// The union of the balls of a shrunk complex before it was shrunk, of so many that it is its solid.
 BallUnion grown_union(const MedialComplex& complex, const Execution& execution);
 
-/// How far linear radii may be above those of the union, between the vertices of an axis that is smoothed or centered:
-/// a part of δ.
+/// How far linear radii may be above those of the union, between the vertices of an axis that is smoothed or centered,
+/// or simplified: a part of δ, or of the error.
 inline constexpr double kLeastDip = 0.2;
 
 /// Is it known of a pair of vertices that a linear radius between them will do?

@@ -16,6 +16,7 @@
 
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
+#include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "base/vectors.hpp"
 #include "uses/curves/ways_out.hpp"
@@ -108,8 +109,7 @@ std::vector<Index> branches_to_parents(const Skeleton& skeleton, const SkeletonT
 
 // A window of the fit has at least so many nodes on each side: two more than a third derivative needs even out noise.
 constexpr std::size_t kLeastNodes = 4;
-constexpr double kWindow = 2.0;      // radii on each side, see `BranchGeometry`
-constexpr double kStraight = 0.002;  // turn in a window, in radians: below, the direction of the bend is rounding
+constexpr double kWindow = 2.0;  // radii on each side, see `BranchGeometry`
 
 /// Value and derivatives at 0.
 using Jet = std::array<double, 4>;
@@ -332,7 +332,8 @@ BranchGeometry branch_geometry(const Skeleton& skeleton, Index branch) {
         const Point bend = cross(first, second);
         const double speed = norm(first);
         const double curvature = speed > 0.0 ? norm(bend) / (speed * speed * speed) : 0.0;
-        const bool is_straight = !(curvature * kWindow * radius > kStraight);
+        // Where a window hardly turns the direction of the bend is rounding.
+        const bool is_straight = !(curvature * kWindow * radius > kNegligible);
         const Point before = k > 0 ? result.transported.back() : normals_to(tangent)[0];
         result.transported.push_back(k > 0 ? transported(before, result.tangents.back(), tangent) : before);
         result.tangents.push_back(tangent);

@@ -7,12 +7,10 @@
 #include "base/faults.hpp"
 #include "base/vectors.hpp"
 #include "scaleaxis/skeleton.hpp"
+#include "uses/boundary_ahead.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-// Radii: a curve ends one radius before a disc that it meets at right angles, and farther from one that is askew.
-constexpr double kMostRadii = 2.0;
 
 /// New nodes from an end to the middle of an opening, and the branch that they prolong.
 struct Prolongation {
@@ -70,6 +68,7 @@ Skeleton led_to_openings(Skeleton skeleton, std::span<const Hole> holes, double 
     std::vector<Prolongation> prolongations;
     for (const Hole& hole : holes) {
         const auto way_of = [&](Index end) { return distance(skeleton.nodes[end], hole.center); };
+        // A curve ends one radius before a disc that it meets at right angles, and farther from one that is askew.
         const auto nearest = std::ranges::min_element(ends, {}, way_of);
         if (nearest == ends.end() || way_of(*nearest) == 0.0 ||
             way_of(*nearest) > std::max(kMostRadii * skeleton.radii[*nearest], hole.width)) {

@@ -22,8 +22,6 @@ constexpr int kSectors = 64;
 // Inscribed radii. Sections of vessels are seldom more than five times as wide as high; what is farther is another
 // part.
 constexpr std::array kReaches{2.0, 4.0, 8.0};
-// Of the radius: how far before the end of a curve its section is taken, since that may lie on the boundary.
-constexpr double kBeforeEnd = 0.01;
 
 Section section_at(const Solid& solid, const Point& p, const Point& tangent, double radius) {
     std::array<double, kReaches.size()> reaches{};
@@ -113,8 +111,9 @@ void add_sections(Skeleton& skeleton, const Solid& solid, const Execution& execu
                             return;  // another branch, or the last node, has it
                         }
                         Point p = skeleton.nodes[n];
+                        // An end may lie on the boundary.
                         if (!is_loop && (k == 0 || k + 1 == nodes.size())) {
-                            p = p + (k == 0 ? 1.0 : -1.0) * kBeforeEnd * skeleton.radii[n] * geometry.tangents[k];
+                            p = p + (k == 0 ? 1.0 : -1.0) * kNegligible * skeleton.radii[n] * geometry.tangents[k];
                         }
                         sections[n] = section_at(solid, p, geometry.tangents[k], skeleton.radii[n]);
                     },

@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "axis/complex.hpp"
 #include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -25,10 +26,6 @@ constexpr double kLongest = 4.0 / 3.0;
 constexpr double kShortest = 4.0 / 5.0;
 // Curves that end nearer to each other than this part of the size end in one point.
 constexpr double kLeastCurve = 0.25;
-// Cosine of the angle to its wall up to which a triangle may turn; one that has turned further must not turn on.
-constexpr double kLeastAgreement = 0.5;
-// Of the size: how far a vertex moves in one round, so that the mesh around it can follow.
-constexpr double kLongestMove = 0.5;
 constexpr int kRounds = 12;         // after all vertices are in their places; shapes of triangles settle in about eight
 constexpr int kMostRounds = 60;     // for sizes far below the thickness of walls
 constexpr int kMostDivisions = 12;  // of an edge 4,000 times as long as the size
@@ -302,13 +299,14 @@ class WallRemesher {
         const double before = agreement(moved, normals_[t]);
         moved[static_cast<std::size_t>(std::ranges::find(triangles_[t], v) - triangles_[t].begin())] = to;
         const double after = agreement(moved, normals_[t]);
-        return after >= std::min(before, kLeastAgreement);
+        return after >= std::min(before, 0.0);
     }
 
+    // Not far in one round, so that the mesh around the vertex can follow.
     void move(Index v, const Point& target, bool keeps_sides) {
         Point step = target - vertices_[v];
-        if (const double length = norm(step); length > kLongestMove * size_) {
-            step = (kLongestMove * size_ / length) * step;
+        if (const double length = norm(step); length > kNearby * size_) {
+            step = (kNearby * size_ / length) * step;
         }
         for (int halving = 0; halving < 4; ++halving, step = 0.5 * step) {
             const Point to = vertices_[v] + step;
@@ -491,7 +489,7 @@ class WallRemesher {
         };
         const double before =
             std::min(agreement(corners_of(first), normals_[first]), agreement(corners_of(second), normals_[second]));
-        if (std::min(agrees(one), agrees(other)) < std::min(before, kLeastAgreement)) {
+        if (std::min(agrees(one), agrees(other)) < std::min(before, 0.0)) {
             return false;
         }
         triangles_[first] = one;
@@ -517,7 +515,7 @@ class WallRemesher {
 WallMesh remeshed(const WallMesh& input, double size, double farthest, const WallShapes& shapes,
                   const Execution& execution) {
     WallRemesher remesher(input, size, shapes);
-    const int rounds = std::min(kMostRounds, kRounds + static_cast<int>(farthest / (kLongestMove * size)));
+    const int rounds = std::min(kMostRounds, kRounds + static_cast<int>(farthest / (kNearby * size)));
     for (int round = 0; round < rounds; ++round) {
         report(execution, kRemeshingStage, static_cast<double>(round) / rounds);
         remesher.divide();

@@ -17,10 +17,6 @@ namespace scaleaxis::inline v1 {
 /// The angle between two vectors, in radians.
 inline double angle_of(const Point& u, const Point& v) { return angle_of(dot(u, v), norm(cross(u, v))); }
 
-/// Cosine of 26 degrees, half of a bend that a shell can take: parts of a wall, of its rim, or of a curve, which differ
-/// by less in direction where they meet, are one.
-inline constexpr double kSameDirection = 0.9;
-
 /// Triangles with the walls that they belong to. Where other than two triangles of one wall meet at an edge it is part
 /// of a *curve*: a seam, a border, or a bend between two walls.
 struct WallMesh {

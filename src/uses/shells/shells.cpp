@@ -15,6 +15,7 @@
 #include <tuple>
 #include <utility>
 
+#include "axis/complex.hpp"
 #include "axis/envelope_data.hpp"
 #include "base/angles.hpp"
 #include "base/disjoint_sets.hpp"
@@ -37,10 +38,6 @@ namespace {
 
 // Growth of the radius along the way that a draft angle of 10 degrees has, but hardly the balls in a bend.
 constexpr double kDraft = 0.1;
-// Of the thickness: a wall is flat if it is as near to its plane, and even if it is as near to its mean thickness. 5 %
-// of it change the stiffness of a flat wall by less than 1 %.
-constexpr double kFlatness = 0.05;
-constexpr double kRimDepth = 0.2;  // of the radius: so far inside the nearest side of the solid is the rim
 
 using TriangleFlags = std::vector<std::uint8_t>;
 
@@ -95,7 +92,7 @@ TriangleFlags near_seams(const Midsurface& surface, const Neighbourhood& neighbo
     std::vector<Index> last(places.size(), kNone);  // seam vertex from which it was reached
     std::vector<Index> next;
     for (const Index start : seam) {
-        const double reach = (1.0 + kSamplingError) * 0.5 * surface.thickness[start];
+        const double reach = (1.0 + kRadiusError) * 0.5 * surface.thickness[start];
         next = {start};
         last[start] = start;
         while (!next.empty()) {
@@ -252,7 +249,7 @@ class WallMiddle {
         find_plane(mesh);
         is_even_ = std::ranges::all_of(mesh.triangles, [&](const std::array<Index, 3>& triangle) {
             return std::ranges::all_of(triangle, [&](Index v) {
-                return std::abs(surface.thickness[v] - thickness_) <= kFlatness * thickness_;
+                return std::abs(surface.thickness[v] - thickness_) <= kSmallPart * thickness_;
             });
         });
         if (!is_flat_ || !is_even_) {
@@ -299,7 +296,7 @@ class WallMiddle {
         normal_ = unit((dot(normal, normal_) < 0.0 ? -1.0 : 1.0) * normal);
         is_flat_ = std::ranges::all_of(mesh.triangles, [&](const std::array<Index, 3>& triangle) {
             return std::ranges::all_of(triangle, [&](Index v) {
-                return std::abs(dot(mesh.vertices[v] - origin_, normal_)) <= kFlatness * thickness_;
+                return std::abs(dot(mesh.vertices[v] - origin_, normal_)) <= kSmallPart * thickness_;
             });
         });
     }
@@ -383,8 +380,8 @@ std::vector<RimSample> rim_samples(const TriangleMesh& mesh, const std::vector<I
                 return;
             }
             sample.place = from + *way * direction;
-            const Point inside = sample.place - kRimDepth * sample.radius * direction;
-            const double step = 0.25 * kRimDepth * sample.radius;
+            const Point inside = sample.place - kRadiusError * sample.radius * direction;
+            const double step = 0.25 * kRadiusError * sample.radius;
             const auto slope = [&](const Point& axis) {
                 return distance_inside(inside - step * axis) - distance_inside(inside + step * axis);
             };

@@ -43,18 +43,13 @@ namespace {
 
 constexpr std::string_view kBlockStage = "block";
 
-// By how much samples are moved off their edge, in voxels: samples of masks lie on planes and on spheres together, and
-// where exact arithmetic has to break ties, there are many. A tenth of what rounding to half voxels hides anyway, and a
-// million times what the predicates need.
-constexpr double kJitter = 1e-3;
-
 // Faces are as large as samples are apart, but for those between few large balls: these ask for more.
 constexpr double kFaceSlack = 3.0;
 
 // A ball between samples is larger than the depth of the voxel nearest to its centre by less than half the diagonal of
 // a voxel to the voxel's centre, and from a crossing of the surface to a sample, which is in the same cell, the whole
 // one.
-double largest_radius(double depth) { return depth + 1.5 * std::numbers::sqrt3 + 10.0 * kJitter; }
+double largest_radius(double depth) { return depth + 1.5 * std::numbers::sqrt3 + 10.0 * kNegligible; }
 
 /// How far from the rim of the array the boundary of the grown union is known.
 double unknown_margin(double radius, double scale) { return (scale + 3.0) * radius + 1.0; }
@@ -176,7 +171,9 @@ std::vector<Point> lattice_samples(const VolumeBlock& block, const BlockField& f
                         const std::uint64_t key =
                             random_bits(key_of({place[0], place[1], place[2]}), static_cast<std::uint64_t>(axis));
                         place[axis] += double{here} / (double{here} - double{there});
-                        out.push_back(Point{place[0], place[1], place[2]} + kJitter * random_direction(seed, key));
+                        // Samples of masks lie on planes and on spheres together, and where exact arithmetic has to
+                        // break ties, there are many: they are moved by a million times what the predicates need.
+                        out.push_back(Point{place[0], place[1], place[2]} + kNegligible * random_direction(seed, key));
                     }
                 }
             }

@@ -14,16 +14,11 @@
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "scaleaxis/ranges.hpp"
+#include "uses/ascent.hpp"
 #include "uses/uphill.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
-
-// Small beside a radius or a way. A ball is seen from a point if balls along the way leave no more than this part of it
-// uncovered, a step that is shorter meets a surface, and the middle between two sides is no farther than this from
-// where `uphill` stops. Half of it costs a third more queries at sharp edges; at twice of it, walls a tenth as thick as
-// the limit may be leapt over.
-constexpr double kSmallPart = 0.05;
 
 // Of the distance of its centre: how much smaller a ball may be that touches there, at the facets of a curved surface,
 // and how far contacts are beside those of the centre. Directions whose cosine differs from 1 by less are of one
@@ -245,7 +240,7 @@ Ball downhill(const Solid& solid, Ball ball, double slope) {
         const auto [a, b] = opposite_contacts(solid, ball);
         const Point lean = unit(a - ball.center) + unit(b - ball.center);
         const double fall = 0.5 * norm(lean);
-        if (fall < kNoGrowth) {
+        if (fall < kNegligible) {
             break;
         }
         double step = 2.0 * ball.radius * fall;  // to the lowest place between a plane and a point

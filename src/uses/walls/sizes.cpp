@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
 #include "base/angles.hpp"
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
@@ -35,8 +36,6 @@ namespace {
 
 constexpr std::string_view kSizesStage = "sizes";
 
-constexpr double kDefaultLeast = 1e-3;  // of the diagonal: the size on a knife's edge, where nothing is said
-
 // Between two places where the size is known it may exceed what is asked for by this part. Half of it takes twice the
 // layers in walls, and four times the vertices where sizes change. Sizes at the ends of an edge that differ by less
 // than twice of it are those of one wall: a taper of which edges are as long as `kEdgeOfSize` allows differs by less.
@@ -49,8 +48,7 @@ constexpr double kEdgeOfSize = 8.0;
 constexpr int kSizeRefinements = 12;                    // an edge of the diagonal is halved to 1/4000 of it
 constexpr std::size_t kMostSizedTriangles = 4'000'000;  // about 4 GB; sizes between vertices are interpolated then
 constexpr double kMostLayers = 32.0;                    // of a wall of 100 elements, at a gradation of 0.1
-constexpr double kBackgroundSpacing = 0.5;  // of the size there: vertices of the background that are nearer go
-constexpr double kBackgroundMargin = 0.1;   // of the diagonal: how far its box is around that of the solid
+constexpr double kBackgroundMargin = 0.1;               // of the diagonal: how far its box is around that of the solid
 
 // A point of the surface, and where the two sides that it lies between are equally far.
 struct SizePlace {
@@ -111,7 +109,8 @@ class SizeSearch {
         const double diagonal = solid.bounds().diagonal();
         slope_ = cosine_of_degrees(0.5 * options.angle);
         most_ = std::min(options.max_size.value_or(diagonal), diagonal);
-        least_ = std::min(options.min_size.value_or(kDefaultLeast * diagonal), most_);
+        // On a knife's edge no size is small enough.
+        least_ = std::min(options.min_size.value_or(kNegligible * diagonal), most_);
         // No ball in the solid has half this radius and more; as large ones outside are next to a wall of the solid.
         const Point sides = solid.bounds().max - solid.bounds().min;
         most_radius_ = std::min({0.5 * options.elements_across * most_, sides.x, sides.y, sides.z});
@@ -318,7 +317,7 @@ std::vector<Index> spread_points(const std::vector<Point>& points, const std::ve
         stop_if_asked();
         if (is_covered[i] == 0) {
             spread.push_back(i);
-            for_each_point_near(tree, points[i], kBackgroundSpacing * sizes[i],
+            for_each_point_near(tree, points[i], kNearby * sizes[i],
                                 [&](Index position, double) { is_covered[tree.order[position]] = 1; });
         }
     }

@@ -22,6 +22,7 @@
 #include "scaleaxis/nearest.hpp"
 #include "scaleaxis/thickness.hpp"
 #include "spatial/point_tree.hpp"
+#include "uses/ascent.hpp"
 #include "uses/divided_edges.hpp"
 #include "uses/flat_faces.hpp"
 #include "uses/uphill.hpp"
@@ -42,12 +43,6 @@ constexpr double kCapLimits = 2.0;
 // Edges where something thin may be are halved until they are shorter than this part of the limit, or than the radius
 // of the ball there; sharp edges in any case.
 constexpr double kEdgeOfLimit = 0.3;
-
-// Of the limit: values that differ by less are those of one wall, with nothing else in between, and the contacts of a
-// smaller ball do not tell its direction.
-constexpr double kUniform = 0.02;
-
-constexpr double kTip = 0.17;  // sine of 10 degrees, by which faces fall back at a sharp edge of 160
 
 constexpr int kRefinements = 10;               // an edge of 2 limits is halved three times
 constexpr std::size_t kMostAdded = 2'000'000;  // triangles; values between vertices are interpolated then
@@ -70,7 +65,7 @@ void add_tips(const TriangleMesh& mesh, const std::vector<Point>& normals, doubl
                 const Point along = mesh.vertices[w] - mesh.vertices[v];
                 const double fall = -sign * dot(along, normals[v]);
                 const double length = norm(along);
-                if (v >= known && fall > length * std::min(kTip, 0.5 * length / radius)) {
+                if (v >= known && fall > 0.5 * length * length / radius) {
                     tips[v] = 1;
                 }
             }
@@ -106,7 +101,7 @@ class WallSearch {
         }
         if (options.min_wall || options.max_wall) {
             walls_.wall_cap = std::max(kCapLimits * options.min_wall.value_or(0.0),
-                                       (1.0 + kUniform) * options.max_wall.value_or(0.0));
+                                       (1.0 + kSmallPart) * options.max_wall.value_or(0.0));
             sides_.push_back({solid_, -1.0, 0.5 * walls_.wall_cap, options.min_wall, {}, {}});
         }
         if (options.min_gap) {
@@ -174,7 +169,7 @@ class WallSearch {
             return length > kEdgeOfLimit * limit;
         }
         return low < kCapLimits * limit && length > std::max(0.5 * low, kEdgeOfLimit * limit) &&
-               high - low > kUniform * limit;
+               high - low > kSmallPart * limit;
     }
 
     void refine() {
@@ -226,7 +221,7 @@ class WallSearch {
             return;
         }
         const double limit = *side.limit - walls_.tolerance;
-        const std::vector<Index> beside = lowest_vertices(side, 1.0, kUniform, [&](Index v) {
+        const std::vector<Index> beside = lowest_vertices(side, 1.0, kSmallPart, [&](Index v) {
             return side.value(v) >= limit && side.value(v) < kCapLimits * *side.limit;
         });
         auto found = mapped<Ball>(
@@ -423,7 +418,7 @@ class WallSearch {
             findings.size(),
             [&](std::size_t f) {
                 Finding& finding = findings[f];
-                finding.ball = is_thick ? uphill(side.solid, side.balls[starts[f].front()], kNoGrowth)
+                finding.ball = is_thick ? uphill(side.solid, side.balls[starts[f].front()], kNegligible)
                                         : smallest_ball(side, chosen_starts(side, starts[f]));
                 finding.value = 2.0 * finding.ball.radius;
                 finding.contacts = opposite_contacts(side.solid, finding.ball);
@@ -464,7 +459,7 @@ class WallSearch {
     // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
     Point direction_of(const SurfaceSide& side, const Finding& finding, Index f,
                        const std::vector<Index>& vertex_findings) const {
-        const double point_size = kUniform * finding.limit;
+        const double point_size = kSmallPart * finding.limit;
         if (finding.ball.radius > point_size) {
             return unit(finding.contacts[1] - finding.contacts[0]);
         }
