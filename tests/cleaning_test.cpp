@@ -11,10 +11,13 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <random>
 #include <string>
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "axis/edit/halving.hpp"
+#include "axis/stages/resolved_fire.hpp"
 #include "complexes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/errors.hpp"
@@ -105,6 +108,49 @@ TEST(ErosionThickness, OfAPlaneSheetIsTheDistanceFromItsBorder) {
             }
             EXPECT_LE(fire.burn_times[v], expected + 1e-9) << complex.vertices[v].x << ' ' << complex.vertices[v].y;
             EXPECT_GE(fire.burn_times[v], expected - 1e-4);
+        }
+    }
+}
+
+/// When the fire comes by in a plane sheet, from a border on which radii are those of a union.
+double first_arrival(const MedialComplex& sheet, const Point& x) {
+    double first = kInfinity;
+    for (const auto& [a, b] : border_of(sheet)) {
+        const double square = squared_distance(sheet.vertices[a], sheet.vertices[b]);
+        for (int k = 0; k <= 500; ++k) {
+            const double t = k / 500.0;
+            const Point p = sheet.vertices[a] + t * (sheet.vertices[b] - sheet.vertices[a]);
+            first = std::min(first, radius_between(sheet.radii[a], sheet.radii[b], square, t) + distance(p, x));
+        }
+    }
+    return first;
+}
+
+TEST(BurntComplex, StartsAtDipsOfTheUnionAndBurnsAsBeforeWhereEdgesAreCut) {
+    constexpr double kTolerance = 0.01;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        Random random(seed);
+        std::uniform_real_distribution<double> unit(0.0, 1.0);
+        const MedialComplex sheet = squares(
+            1.0, 4, 3, 1, [](int, int) { return true; }, [&](const Point&) { return 0.8 + 0.2 * unit(random); });
+        BurntComplex burnt = burnt_complex(sheet, kTolerance);
+        for (int round = 0; round < 3; ++round) {
+            for (std::size_t s = 0; s < burnt.sectors.vertices.size(); ++s) {
+                const Index v = burnt.sectors.vertices[s];
+                const double expected = first_arrival(sheet, burnt.complex.vertices[v]);
+                EXPECT_LE(burnt.fire.sector_times[s], expected + kTolerance) << v;
+                EXPECT_GE(burnt.fire.sector_times[s], expected - 1e-3) << v;  // half a step of the border
+                EXPECT_EQ(burnt.fire.vertex_times[v], std::max(burnt.radii[v], burnt.fire.sector_times[s]));
+            }
+            const std::size_t edges = burnt.complex.edges.size();
+            Halving cuts{std::vector<std::uint8_t>(edges), std::vector<double>(edges), std::vector<double>(edges)};
+            for (Index e = 0; e < static_cast<Index>(edges); ++e) {
+                if (random() % 3 == 0) {
+                    note_cut(burnt, e, 0.2 + 0.6 * unit(random), cuts);
+                }
+            }
+            ASSERT_TRUE(cut(burnt, cuts));
         }
     }
 }
