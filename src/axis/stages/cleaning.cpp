@@ -33,7 +33,10 @@ constexpr double kOpeningSlack =
     0.1;  // of T: how far discs need not reach the border, which they meet in a row of arcs
 // Of an edge whose ends are to go: where its inside may have to stay.
 constexpr std::array kPartsLookedAt{0.25, 0.5, 0.75};
-constexpr double kLeastCut = 0.2;     // of an edge: cuts closer to an end go through the end
+constexpr double kLeastCut = 0.2;  // of an edge: cuts closer to an end go through the end
+// Of T: how much later than balls of the union the fire may start between vertices of the border. A third of T takes
+// rims of curved walls, which are led on straight, off their middle; all of it leaves some more sheets.
+constexpr double kLateStart = 0.75;
 constexpr double kCurveFactor = 2.0;  // curves are longer than sheets are deep
 
 double local_thickness(double thickness, double radius) { return std::min(thickness, 0.5 * radius); }
@@ -602,7 +605,7 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
 
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
-    BurntComplex burnt = burnt_complex(given, options.finds_ridges ? kOpeningSlack * options.thickness : kInfinity);
+    BurntComplex burnt = burnt_complex(given, options.finds_ridges ? kLateStart * options.thickness : kInfinity);
     Opening opening(burnt, options.thickness);
     const int rounds = options.finds_ridges ? kMostCutRounds : 0;
     for (int round = 0; round < rounds && cut(burnt, cuts_for(burnt, opening, options)); ++round) {
