@@ -259,7 +259,7 @@ TEST(Smooth, OfAComplexAloneStaysInTheSolidOnLargeFaces) {
     EXPECT_EQ(topology(alone), topology(before));
     EXPECT_LT(largest_excess(alone, solid), tolerance);
     // Cleaning leaves radii exact, at its cuts too.
-    const MedialComplex cleaned = clean(before, {.thickness = 0.05}).complex;
+    const MedialComplex cleaned = clean(before, {.thickness = 0.2}).complex;
     EXPECT_GT(cleaned.faces.size(), 10U);
     EXPECT_NE(cleaned.vertices, before.vertices);
     EXPECT_LT(largest_excess(cleaned, solid), 1e-3);
