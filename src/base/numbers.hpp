@@ -20,9 +20,9 @@ inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< in radians
 inline constexpr double kRelativeRounding = 1e-9;
 inline constexpr double kFileRounding = 1e-6;
 
-/// Part of a length, or of a weight, that makes no difference to whoever reads a result: searches end there, and what is
-/// nearer than this part of the way is there. Ten times as much would be seen: a wall could miss its limit by a percent.
-/// A tenth of it costs searches more steps for digits that nobody reads.
+/// Part of a length, or of a weight, that makes no difference to whoever reads a result: searches end there, and what
+/// is nearer than this part of the way is there. Ten times as much would be seen: a wall could miss its limit by a
+/// percent. A tenth of it costs searches more steps for digits that nobody reads.
 inline constexpr double kNegligible = 1e-3;
 
 /// The larger of two in the middle. \param values not empty
