@@ -15,9 +15,9 @@ namespace {
 // gets over the roughness of scans; where the last one leads no further, about 0.2 % of the radius is missing.
 constexpr std::array kSteps{0.5, 0.08, 0.0125, 0.002};
 
-constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
-
 constexpr double kFirstStep = 1e-5;  // of the diagonal: the shortest step, for balls that start in a sharp edge
+
+constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
 
 // Never reached: on the way out of an edge a radius grows by a quarter or more with each step, and 1e5 is 1.25^52.
 constexpr int kMostSteps = 200;

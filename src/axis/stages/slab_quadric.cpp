@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "axis/stages/slab_quadric.hpp"
-#include "base/numbers.hpp"
-#include "spatial/mesh_parts.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 
+#include "base/numbers.hpp"
+#include "spatial/mesh_parts.hpp"
+
 namespace scaleaxis::inline v1 {
-namespace {}  // namespace
 
 void SlabQuadric::add_plane(const Point& normal, const Ball& ball, double plane_weight) {
     const Eigen::Vector4d n(normal.x, normal.y, normal.z, 1.0);
