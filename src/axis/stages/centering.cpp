@@ -417,19 +417,20 @@ class CenteringBatch {
         for (auto& [normal, height] : vertex.planes) {
             height -= dot(normal, way);
         }
-        vertex.is_moving = !stays(vertex);
-        if (vertex.is_moving) {
-            add_nearer_contact(vertex);
+        if (!stays(vertex)) {
+            vertex.is_moving = add_nearer_contact(vertex) || norm(way) > kSmallLength * tolerance_;
         }
     }
 
     // Where something of the boundary lies before all of these planes, it is a contact, too: where sheets meet, those
     // of the faces at a vertex need not tell of it.
-    static void add_nearer_contact(Centering& vertex) {
+    static bool add_nearer_contact(Centering& vertex) {
+        const std::size_t known = vertex.directions.size();
         const Point way = vertex.nearest_place(vertex.center) - vertex.center;
         if (std::ranges::all_of(vertex.planes, [&](const ContactPlane& plane) { return norm(way) < plane.distance; })) {
             add_direction(vertex.directions, unit(way));
         }
+        return vertex.directions.size() > known;
     }
 
     // Where the ball has become smaller on the way, the vertex goes back: it will not grow again, unless by little, in
