@@ -6,11 +6,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 
 #include "base/angles.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -22,20 +22,16 @@ constexpr int kMaxSteps = 10;
 
 struct Plane {
     Point normal;
-    Point point;
+    Point point{kInfinity, kInfinity, kInfinity};
 
     double from(const Point& p) const { return dot(normal, point - p); }
 };
 
-// The tangent plane of the boundary at the point that is nearest to `p`.
-Plane tangent_plane(const Point& p, const Point& nearest) { return {unit(nearest - p), nearest}; }
-
 struct Search {
     Point start;
     Point at;
-    double radius = 0.0;
-    std::array<Plane, 3> planes{};
     Crease crease;
+    std::array<Plane, 3> planes{};
     bool is_active = true;
     bool is_found = false;
 };
@@ -68,153 +64,108 @@ class CreaseSearch {
           wants_corners_(wants_corners) {}
 
     std::vector<std::optional<Crease>> run(std::span<const Point> points) {
-        searches_.resize(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            searches_[i].start = points[i];
-            searches_[i].at = points[i];
+        for (const Point& p : points) {
+            searches_.push_back({p, p, {p, {}, {}}});
         }
         for (int step = 0; step < kMaxSteps; ++step) {
             stop_if_cancelled();
-            find_planes(step == 0);
-            for_each_active([&](Search& search) { approach(search, step); });
-        }
-        check_places();
-        std::vector<std::optional<Crease>> result(points.size());
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            if (searches_[i].is_found) {
-                result[i] = searches_[i].crease;
+            find_planes();
+            for (Search& search : searches_) {
+                if (search.is_active) {
+                    approach(search);
+                }
             }
         }
-        return result;
+        return creases_on_edges();
     }
 
    private:
-    template <class Work>
-    void for_each_active(const Work& work) {
-        for (Search& search : searches_) {
-            if (search.is_active) {
-                work(search);
-            }
+    // The tangent planes of the contacts: the nearest point, and those that are nearest from a little aside.
+    void find_planes() {
+        ask(
+            0, [](const Search&) { return true; }, [](const Search& search) { return search.at; });
+        find_plane(1, [](const Search& search) { return search.planes[0].normal; });
+        if (wants_corners_) {
+            find_plane(2, [](const Search& search) { return unit(search.planes[0].normal + search.planes[1].normal); });
         }
     }
 
-    // A question for the nearest point of the boundary.
-    struct Question {
-        Point point;
-        double bound = std::numeric_limits<double>::infinity();
-    };
-
-    // Asks `question_of(search)` for each active search that `is_wanted`, and has `take(search, point, nearest)` take
-    // the answer.
-    template <class IsWanted, class QuestionOf, class Take>
-    void ask(const IsWanted& is_wanted, const QuestionOf& question_of, const Take& take) {
+    // Asks for the point of the boundary nearest to `point_of(search)` for each active search that is `is_wanted`, and
+    // for the tangent plane there.
+    template <class IsWanted, class PointOf>
+    void ask(std::size_t number, const IsWanted& is_wanted, const PointOf& point_of) {
         std::vector<Search*> asking;
         std::vector<Point> points;
         std::vector<double> bounds;
-        for_each_active([&](Search& search) {
-            if (is_wanted(search)) {
-                const Question question = question_of(search);
+        for (Search& search : searches_) {
+            if (search.is_active && is_wanted(search)) {
                 asking.push_back(&search);
-                points.push_back(question.point);
-                bounds.push_back(question.bound);
+                points.push_back(point_of(search));
+                // Some point of the boundary is known: no farther one is wanted.
+                bounds.push_back((1.0 + kFileRounding) * distance(points.back(), search.planes[0].point));
             }
-        });
+        }
         const std::vector<std::optional<Point>> answers = nearest_of(solid_, points, bounds);
         for (std::size_t i = 0; i < asking.size(); ++i) {
-            if (answers[i]) {
-                take(*asking[i], points[i], *answers[i]);
-            } else {
-                asking[i]->is_active = false;
+            asking[i]->is_active = answers[i] && *answers[i] != points[i];
+            if (asking[i]->is_active) {
+                asking[i]->planes[number] = {unit(*answers[i] - points[i]), *answers[i]};
             }
         }
-    }
-
-    // The tangent planes of the contacts: the nearest point, and those that are nearest from a little aside.
-    void find_planes(bool is_first) {
-        ask([](const Search&) { return true; },
-            [&](const Search& search) {
-                return is_first ? Question{search.at} : question_near(search.at, search.planes[0].point);
-            },
-            [&](Search& search, const Point& p, const Point& nearest) {
-                search.planes[0] = tangent_plane(p, nearest);
-                search.radius = distance(p, nearest);
-                if (!(search.radius > 0.0 && search.radius <= reach_)) {
-                    search.is_active = false;
-                    search.is_found = false;
-                }
-            });
-        const auto is_second = [&](const Search& search) {
-            return dot(search.planes[0].normal, search.planes[1].normal) < most_cosine_;
-        };
-        find_plane(
-            1, [](const Search& search) { return search.planes[0].normal; }, is_second);
-        if (wants_corners_) {
-            find_plane(
-                2, [](const Search& search) { return unit(search.planes[0].normal + search.planes[1].normal); },
-                [&](const Search& search) {
-                    const auto& [a, b, c] = search.planes;
-                    return dot(c.normal, a.normal) < most_cosine_ && dot(c.normal, b.normal) < most_cosine_;
-                });
-        }
-    }
-
-    // Some point of the boundary is known: no farther one is wanted.
-    static Question question_near(const Point& p, const Point& known) {
-        return {p, (1.0 + kFileRounding) * distance(p, known)};
     }
 
     // The plane that is nearest from a point farther from those before. Little farther first: in thin parts the
     // opposite side is not far.
-    template <class NormalOf, class IsFound>
-    void find_plane(std::size_t number, const NormalOf& normal_of, const IsFound& is_found) {
+    template <class NormalOf>
+    void find_plane(std::size_t number, const NormalOf& normal_of) {
+        const auto is_missing = [&](const Search& search) {
+            return std::any_of(search.planes.begin(), search.planes.begin() + number, [&](const Plane& before) {
+                return !(dot(before.normal, search.planes[number].normal) < most_cosine_);
+            });
+        };
         for (Search& search : searches_) {
             search.planes[number] = search.planes[0];
         }
         for (const double part : kAside) {
-            ask([&](const Search& search) { return !is_found(search); },
-                [&](const Search& search) {
-                    return question_near(search.at - (part * search.radius) * normal_of(search),
-                                         search.planes[0].point);
-                },
-                [&](Search& search, const Point& p, const Point& nearest) {
-                    search.planes[number] = tangent_plane(p, nearest);
-                });
+            ask(number, is_missing, [&](const Search& search) {
+                const double radius = distance(search.at, search.planes[0].point);
+                return search.at - (part * radius) * normal_of(search);
+            });
         }
-        for_each_active([&](Search& search) { search.is_active = is_found(search); });
+        for (Search& search : searches_) {
+            search.is_active = search.is_active && !is_missing(search);
+        }
     }
 
-    void approach(Search& search, int step) const {
+    void approach(Search& search) const {
         const auto& [a, b, c] = search.planes;
         const Point place = wants_corners_ ? on_all(search.planes, search.at) : on_both(a, b, search.at);
         const double way = distance(place, search.start);
-        if (!(way <= reach_)) {
-            search.is_active = false;
-            search.is_found = false;
-            return;
-        }
-        const double change = step == 0 ? way : distance(place, search.crease.place);
+        const double change = distance(place, search.crease.place);
         search.crease = {place, wants_corners_ ? Point() : unit(cross(a.normal, b.normal)), {a.normal, b.normal}};
         search.at = place + kApproach * (search.at - place);
-        search.is_found = change <= kNegligible * way;
-        search.is_active = change > kFileRounding * way;
+        search.is_found = way <= reach_ && change <= kNegligible * way;
+        search.is_active = way <= reach_ && change > kFileRounding * way;
     }
 
     // On a convex edge the solid ends: it is entered a little before, and left a little behind.
-    void check_places() {
-        std::vector<Search*> found;
+    std::vector<std::optional<Crease>> creases_on_edges() const {
+        const std::vector<Index> found =
+            indices_where(searches_.size(), [&](Index i) { return searches_[i].is_found; });
         std::vector<Point> points;
-        for (Search& search : searches_) {
-            if (search.is_found) {
-                const Point& place = search.crease.place;
-                const Point little = kNegligible * (place - search.start);
-                found.push_back(&search);
-                append(points, {place - little, place + little});
-            }
+        for (const Index i : found) {
+            const Point& place = searches_[i].crease.place;
+            const Point little = kNegligible * (place - searches_[i].start);
+            append(points, {place - little, place + little});
         }
         const std::vector<std::uint8_t> sides = sides_of(solid_, points);
-        for (std::size_t i = 0; i < found.size(); ++i) {
-            found[i]->is_found = sides[2 * i] != 0 && sides[2 * i + 1] == 0;
+        std::vector<std::optional<Crease>> result(searches_.size());
+        for (std::size_t k = 0; k < found.size(); ++k) {
+            if (sides[2 * k] != 0 && sides[2 * k + 1] == 0) {
+                result[found[k]] = searches_[found[k]].crease;
+            }
         }
+        return result;
     }
 
     const Solid& solid_;
@@ -225,10 +176,6 @@ class CreaseSearch {
 };
 
 }  // namespace
-
-double angle_between(const Point& a, const Point& b) {
-    return angle_of_cosine(std::clamp(dot(a, b), -1.0, 1.0)) / kDegree;
-}
 
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners) {

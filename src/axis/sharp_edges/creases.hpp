@@ -28,9 +28,6 @@ struct Crease {
     std::array<Point, 2> normals{};  // outwards, of length 1
 };
 
-/// Between two directions of length 1; degrees.
-double angle_between(const Point& a, const Point& b);
-
 /// The sharp edge, or the corner, near each of the points; nothing where there is none.
 std::vector<std::optional<Crease>> creases_near(const Solid& solid, std::span<const Point> points,
                                                 const SharpEdgeOptions& options, bool wants_corners);

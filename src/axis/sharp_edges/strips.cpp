@@ -19,6 +19,7 @@
 #include "axis/complex.hpp"
 #include "axis/sharp_edges/creases.hpp"
 #include "axis/sharp_edges/ways.hpp"
+#include "base/angles.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -348,7 +349,8 @@ class Strips {
             const auto& [n, m] = line.normals[segment];
             const auto contacts =
                 complex_.has_contacts() ? std::optional(added_contacts(triangle, {n, m})) : std::nullopt;
-            add_face(complex_, corners, {0.5 * angle_between(n, m), 0, contacts});
+            const double angle = angle_of_cosine(std::clamp(dot(n, m), -1.0, 1.0)) / kDegree;
+            add_face(complex_, corners, {0.5 * angle, 0, contacts});
         }
         statistics_.length += length;
         return true;
