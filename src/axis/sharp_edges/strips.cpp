@@ -16,9 +16,9 @@
 #include <utility>
 #include <vector>
 
+#include "axis/cheapest_ways.hpp"
 #include "axis/complex.hpp"
 #include "axis/sharp_edges/creases.hpp"
-#include "axis/sharp_edges/ways.hpp"
 #include "base/angles.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -225,7 +225,8 @@ class Strips {
                        : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
         const auto is_foot = [&goals = part.feet[1]](Index v) { return std::ranges::binary_search(goals, v); };
-        return cheapest_way(neighbors_, from, is_foot, cost);
+        const CheapestWays ways(neighbors_, from, is_foot, cost);
+        return ways.way_to(ways.goal);
     }
 
     // Triangles between a way and the places above it.

@@ -4,16 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <functional>
-#include <limits>
 #include <map>
-#include <queue>
 #include <set>
 #include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
+#include "axis/cheapest_ways.hpp"
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/numbers.hpp"
@@ -63,37 +61,11 @@ std::vector<Index> roots_of(const Skeleton& skeleton, const std::vector<Index>& 
     return roots;
 }
 
-/// The shortest ways from a node along edges (E. Dijkstra, 1959).
-struct ShortestWays {
-    std::vector<double> lengths;
-    std::vector<Index> previous;  ///< the node before on the way; `kNone`: there is no way, or it begins here
-
-    explicit ShortestWays(std::size_t nodes) : lengths(nodes, std::numeric_limits<double>::infinity()) {
-        previous.assign(nodes, kNone);
-    }
-
-    void find(const Skeleton& skeleton, const IndexLists& neighbors, Index source) {
-        using Entry = std::pair<double, Index>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> waiting;
-        lengths[source] = 0.0;
-        waiting.push({0.0, source});
-        while (!waiting.empty()) {
-            const auto [way, node] = waiting.top();
-            waiting.pop();
-            if (way > lengths[node]) {
-                continue;
-            }
-            for (const Index other : neighbors[node]) {
-                const double longer = way + distance(skeleton.nodes[node], skeleton.nodes[other]);
-                if (longer < lengths[other]) {
-                    lengths[other] = longer;
-                    previous[other] = node;
-                    waiting.push({longer, other});
-                }
-            }
-        }
-    }
-};
+/// Along edges, up to the goal if that is reached.
+CheapestWays shortest_ways(const Skeleton& skeleton, const IndexLists& neighbors, Index from, Index goal = kNone) {
+    return {neighbors, std::array{from}, [&](Index n) { return n == goal; },
+            [&](Index n, Index next) { return distance(skeleton.nodes[n], skeleton.nodes[next]); }};
+}
 
 /// The branch of the edge between each node of a tree and its parent; of a root `kNone`.
 std::vector<Index> branches_to_parents(const Skeleton& skeleton, const SkeletonTree& tree) {
@@ -212,7 +184,6 @@ SkeletonTree tree_of(const Skeleton& skeleton) {
     const std::vector<Index> degree = degrees(skeleton);
     const std::vector<Index> branch_degree = branch_degrees(skeleton);
     const IndexLists neighbors = neighbors_on_branches(skeleton);
-    ShortestWays ways(skeleton.nodes.size());
     SkeletonTree tree;
     std::vector<Index> places(skeleton.nodes.size(), kNone);
     std::vector<Index> roots = roots_of(skeleton, degree);
@@ -226,7 +197,7 @@ SkeletonTree tree_of(const Skeleton& skeleton) {
         if (places[root] != kNone || is_in_sheet) {
             continue;
         }
-        ways.find(skeleton, neighbors, root);
+        const CheapestWays ways = shortest_ways(skeleton, neighbors, root);
         std::vector<Edge> waiting{{root, kNone}};  // node, and the place of its parent
         while (!waiting.empty()) {
             const auto [node, parent] = waiting.back();
@@ -235,9 +206,9 @@ SkeletonTree tree_of(const Skeleton& skeleton) {
             tree.nodes.push_back(node);
             tree.parents.push_back(parent);
             for (std::size_t k = neighbors[node].size(); k-- > 0;) {
-                if (const Index next = neighbors[node][k]; ways.previous[next] == node) {
+                if (const Index next = neighbors[node][k]; ways.arrivals.at(next).previous == node) {
                     waiting.push_back({next, places[node]});
-                } else if (ways.previous[node] != next && node < next) {
+                } else if (ways.arrivals.at(node).previous != next && node < next) {
                     tree.cuts.push_back({node, next});
                 }
             }
@@ -357,14 +328,13 @@ Skeleton path_between(const Skeleton& skeleton, const Point& from, const Point& 
     const Index source = nearest_node(skeleton, from);
     const Index target = nearest_node(skeleton, to);
     const IndexLists neighbors = grouped_both_ways(skeleton.nodes.size(), skeleton.edges);
-    ShortestWays ways(skeleton.nodes.size());
-    ways.find(skeleton, neighbors, target);  // from there, so that the path is found in its order
-    if (source != target && ways.previous[source] == kNone) {
+    const CheapestWays ways = shortest_ways(skeleton, neighbors, source, target);
+    if (ways.goal == kNone) {
         throw UnusableInput("no curve leads from one end of the path to the other: they are in different parts");
     }
     Skeleton result;
     std::vector<Index> branch;
-    for (Index n = source; n != kNone; n = ways.previous[n]) {
+    for (const Index n : ways.way_to(target)) {
         const auto place = static_cast<Index>(result.nodes.size());
         result.nodes.push_back(skeleton.nodes[n]);
         result.radii.push_back(skeleton.radii[n]);
