@@ -28,8 +28,6 @@ namespace {
 // Along an edge, from place to place; nearer ones say the same. With 1 two ends that step towards each other pass.
 constexpr double kStep = 0.9;
 constexpr double kLinkReach = 2.0;  // so far ahead the next place of an edge may be
-constexpr double kBeyondPlace =
-    0.05;  // past a corner its edge is no more: seen if a face ends it at 12 degrees or more
 
 // A ball beside an edge sees its faces at the angle of their normals, but for what the union is off: of a hundred balls
 // beside the edges of boxes, prisms and cylinders one to five see less than this part of it, and those next to them
@@ -41,48 +39,44 @@ struct Node {
     Crease crease;                            // without a direction in corners
     Point inside;                             // from where it was seen
     std::array<Index, 2> next{kNone, kNone};  // against and along the direction
-    std::array<std::uint8_t, 2> is_open{1, 1};
 
     bool is_corner() const { return norm(crease.direction) == 0.0; }
     Point towards(std::size_t side) const { return side == 0 ? -1.0 * crease.direction : crease.direction; }
 };
 
+// A side of a place from which the edge goes on to none.
+struct End {
+    Index node;
+    int side;
+};
+
 class Tracing {
    public:
-    Tracing(const Solid& solid, const SharpEdgeOptions& options)
-        : solid_(solid),
-          options_(options),
-          most_steps_(
-              static_cast<std::size_t>(std::ceil(4.0 * solid.bounds().diagonal() / (kStep * options.tolerance)))) {}
+    Tracing(const Solid& solid, const SharpEdgeOptions& options) : solid_(solid), options_(options) {}
 
     std::vector<SharpEdge> run(const std::vector<Point>& points) {
         const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
-        std::vector<Point> places;
-        std::vector<Index> found;
+        std::vector<End> open;
         for (std::size_t i = 0; i < points.size(); ++i) {
-            if (creases[i]) {
-                places.push_back(creases[i]->place);
-                found.push_back(static_cast<Index>(i));
+            const auto is_near = [&](const Node& node) {
+                return distance(node.crease.place, creases[i]->place) <= kStep * options_.tolerance;
+            };
+            if (creases[i] && std::ranges::none_of(nodes_, is_near)) {
+                open.push_back({static_cast<Index>(nodes_.size()), 0});
+                open.push_back({static_cast<Index>(nodes_.size()), 1});
+                nodes_.push_back({*creases[i], points[i]});
             }
         }
-        if (places.empty()) {
+        if (nodes_.empty()) {
             return {};
         }
-        const PointTree tree = build_point_tree(places);
-        std::vector<std::uint8_t> is_near(places.size());
-        for (std::size_t i = 0; i < places.size(); ++i) {
-            if (is_near[i] == 0) {
-                nodes_.push_back({*creases[found[i]], points[found[i]]});
-                for_each_point_near(tree, places[i], kStep * options_.tolerance,
-                                    [&](Index at, double) { is_near[tree.order[at]] = 1; });
-            }
-        }
-        for (std::size_t step = 0; step < most_steps_; ++step) {
+        // More than it takes to go around any edge.
+        const double most_steps = 4.0 * solid_.bounds().diagonal() / (kStep * options_.tolerance);
+        for (double step = 0.0; step < most_steps && !open.empty(); step += 1.0) {
             stop_if_cancelled();
             link(kLinkReach);
-            if (!go_on()) {
-                break;
-            }
+            std::erase_if(open, [&](const End& end) { return !is_end(end.node, end.side); });
+            open = next_ends(open);
         }
         link(kCreaseReach);
         meet();
@@ -152,24 +146,6 @@ class Tracing {
                 std::abs(dot(crease.direction, nodes_[i].crease.direction)) >= kSameDirection);
     }
 
-    struct End {
-        Index node;
-        int side;
-    };
-
-    // Places from which an edge goes on to none; those that have not been looked at from yet, or all.
-    std::vector<End> ends_of_edges(bool wants_all) const {
-        std::vector<End> ends;
-        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
-            for (int side = 0; side < 2; ++side) {
-                if (is_end(i, side) && (wants_all || nodes_[i].is_open[side] != 0)) {
-                    ends.push_back({i, side});
-                }
-            }
-        }
-        return ends;
-    }
-
     // What is seen some steps ahead of open ends, if it is a place where their edges go on.
     std::vector<std::optional<Crease>> seen_ahead(const std::vector<End>& ends, double steps,
                                                   bool wants_corners) const {
@@ -181,22 +157,17 @@ class Tracing {
         }
         std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
         for (std::size_t k = 0; k < ends.size(); ++k) {
-            const auto& [i, side] = ends[k];
-            const Node& node = nodes_[i];
-            const Point beyond = (kBeyondPlace * options_.tolerance) * node.towards(side);
-            // If the edge goes on, the third plane was that of a point which is not the nearest.
-            const auto goes_past = [&](const Point& corner) { return is_convex_at(corner + beyond, node); };
-            if (creases[k] && (!goes_on_to(*creases[k], i, side) || (wants_corners && goes_past(creases[k]->place)))) {
+            if (creases[k] && !goes_on_to(*creases[k], ends[k].node, ends[k].side)) {
                 creases[k].reset();
             }
         }
         return creases;
     }
 
-    // Takes a step from each open end, or goes to the corner in which the edge ends. \returns whether there was one
-    bool go_on() {
-        const std::vector<End> ends = ends_of_edges(false);
+    // Takes a step from each end, or goes to the corner in which the edge ends. \returns where the steps lead
+    std::vector<End> next_ends(const std::vector<End>& ends) {
         const std::vector<std::optional<Crease>> creases = seen_ahead(ends, 1.0, false);
+        std::vector<End> next;
         std::vector<End> last;
         for (std::size_t k = 0; k < ends.size(); ++k) {
             const auto& [i, side] = ends[k];
@@ -210,7 +181,9 @@ class Tracing {
             nodes_.push_back({*creases[k], creases[k]->place - depth * unit(a + b)});
             const Index added = static_cast<Index>(nodes_.size()) - 1;
             nodes_[i].next[side] = added;
-            nodes_[added].next[is_ahead(added, 0, nodes_[i].crease.place) ? 0 : 1] = i;
+            const int back = is_ahead(added, 0, nodes_[i].crease.place) ? 0 : 1;
+            nodes_[added].next[back] = i;
+            next.push_back({added, 1 - back});
         }
         // Beyond a corner nothing is seen: it is looked for from nearer points as well.
         for (const double steps : {0.5, 0.0, 1.0}) {
@@ -225,16 +198,20 @@ class Tracing {
             }
             last = std::move(rest);
         }
-        for (const auto& [i, side] : last) {
-            nodes_[i].is_open[side] = 0;
-        }
-        return !ends.empty();
+        return next;
     }
 
     // Ends that have stopped before a place where their edges meet: a corner whose third face is not seen from within,
     // as where a re-entrant edge ends, or one so sharp that no ball near it sees its edges.
     void meet() {
-        const std::vector<End> ends = ends_of_edges(true);
+        std::vector<End> ends;
+        for (Index i = 0; i < static_cast<Index>(nodes_.size()); ++i) {
+            for (int side = 0; side < 2; ++side) {
+                if (is_end(i, side)) {
+                    ends.push_back({i, side});
+                }
+            }
+        }
         for (std::size_t k = 0; k < ends.size(); ++k) {
             for (std::size_t m = 0; m < k; ++m) {
                 const std::optional<Point> place = meeting_of(nodes_[ends[k].node].crease, nodes_[ends[m].node].crease);
