@@ -323,6 +323,22 @@ Shape convex_prism(const Polygon& polygon, double height) {
     return shape;
 }
 
+Shape octahedron() {
+    Shape shape;
+    shape.function = [](const Point& p) {
+        return (std::abs(p.x) + std::abs(p.y) + std::abs(p.z) - 1.0) / std::numbers::sqrt3;
+    };
+    shape.bounds = {{-1.0, -1.0, -1.0}, {1.0, 1.0, 1.0}};
+    for (const double a : {-1.0, 1.0}) {
+        for (const double b : {-1.0, 1.0}) {
+            shape.edges.push_back({Point{a, 0.0, 0.0}, Point{0.0, b, 0.0}});
+            shape.edges.push_back({Point{0.0, a, 0.0}, Point{0.0, 0.0, b}});
+            shape.edges.push_back({Point{0.0, 0.0, a}, Point{b, 0.0, 0.0}});
+        }
+    }
+    return shape;
+}
+
 Shape ell_prism() {
     Shape shape;
     shape.function = [](const Point& p) {
@@ -392,6 +408,8 @@ TEST(TracedEdges, OfACube) { expect_segments_traced(convex_prism({{0, 0}, {1, 0}
 TEST(TracedEdges, OfAWedgeOf20Degrees) { expect_segments_traced(convex_prism(wedge(20.0), 1.0)); }
 
 TEST(TracedEdges, OfAPrismWithAReentrantEdge) { expect_segments_traced(ell_prism()); }
+
+TEST(TracedEdges, OfAnOctahedron) { expect_segments_traced(octahedron()); }
 
 TEST(TracedEdges, OfACylinderAreTwoClosedRims) { expect_rims_traced(tapered(1.0, 1.0), 2); }
 
