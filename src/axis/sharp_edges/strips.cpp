@@ -39,13 +39,6 @@ constexpr double kFootReach = 2.0;    // of the way to the nearest vertex: how f
 constexpr double kSimilarFeet = 1.1;  // so many times the least distance in radii: then the nearest one counts
 constexpr int kPartsOfLoop = 3;       // the shortest way below a third of a loop does not lead around the other side
 
-// A part of a line, between corners or between cuts through a closed line.
-struct Part {
-    EdgeLine line;  // in steps
-    std::array<Index, 2> ends;
-    std::array<std::vector<Index>, 2> feet{};  // from which it has been tried
-};
-
 // Three vertices; places on the line are -1 - place.
 using Triangle = std::array<Index, 3>;
 
@@ -87,11 +80,11 @@ class Strips {
     }
 
     void run(std::span<const EdgeLine> lines) {
-        std::vector<Part> parts = parts_of(lines);
-        std::ranges::stable_sort(parts, std::greater<>(), [](const Part& part) { return part.line.length(); });
+        std::vector<EdgeLine> parts = parts_of(lines);
+        std::ranges::stable_sort(parts, std::greater<>(), &EdgeLine::length);
         const std::size_t faces = complex_.faces.size();
         // A corner that is reached may be where another line can begin.
-        while (std::erase_if(parts, [&](Part& part) { return reach(part); }) > 0) {
+        while (std::erase_if(parts, [&](const EdgeLine& part) { return reach(part); }) > 0) {
             // once more
         }
         if (complex_.faces.size() > faces) {
@@ -101,11 +94,12 @@ class Strips {
     }
 
    private:
-    std::vector<Part> parts_of(std::span<const EdgeLine> lines) {
+    // Lines between corners, or between cuts through a closed line, in steps.
+    std::vector<EdgeLine> parts_of(std::span<const EdgeLine> lines) {
         for (const EdgeLine& line : lines) {
             first_cut_ = std::max({first_cut_, line.ends[0] + 1, line.ends[1] + 1});
         }
-        std::vector<Part> parts;
+        std::vector<EdgeLine> parts;
         Index next_end = first_cut_;
         for (const EdgeLine& line : lines) {
             const int count = line.ends[0] == line.ends[1] ? kPartsOfLoop : 1;
@@ -117,35 +111,28 @@ class Strips {
                 const auto end_of = [&](int k) {
                     return line.is_closed() || k % count != 0 ? next_end + k % count : line.ends[k == 0 ? 0 : 1];
                 };
-                parts.push_back({section_of(line, i * length, (i + 1) * length, step, kEdgeAccuracy * tolerance_),
-                                 {end_of(i), end_of(i + 1)}});
+                parts.push_back(section_of(line, i * length, (i + 1) * length, step, kEdgeAccuracy * tolerance_));
+                parts.back().ends = {end_of(i), end_of(i + 1)};
             }
             next_end += count;
         }
-        std::erase_if(parts, [](const Part& part) { return part.line.points.size() < 3; });
         return parts;
     }
 
     // Else it is where a loop is cut.
     bool is_corner(Index end) const { return end < first_cut_; }
 
-    bool reach(Part& part) {
+    bool reach(const EdgeLine& line) {
         stop_if_cancelled();
-        const std::array feet{feet_of(part.ends[0], part.line.points.front()),
-                              feet_of(part.ends[1], part.line.points.back())};
-        if (feet == part.feet) {
-            return false;  // its corners are what they were
-        }
-        part.feet = feet;
-        const std::vector<Index> way = way_below(part);
+        const std::vector<Index> way = way_below(line);
         if (way.empty()) {
             return false;
         }
-        const std::vector<Triangle> strip = strip_between(way, part.line);
-        const std::vector<std::uint8_t> is_valid = are_valid(strip, way, part.line);
+        const std::vector<Triangle> strip = strip_between(way, line);
+        const std::vector<std::uint8_t> is_valid = are_valid(strip, line);
         bool is_reached = false;
         for_each_run(is_valid, [&](std::size_t first, std::size_t last) {
-            is_reached |= is_valid[first] != 0 && add_run(std::span(strip).subspan(first, last - first), part,
+            is_reached |= is_valid[first] != 0 && add_run(std::span(strip).subspan(first, last - first), line,
                                                           first == 0, last == strip.size());
         });
         return is_reached;
@@ -198,9 +185,8 @@ class Strips {
 
     // Through the complex, along the line, from a foot of the one end to one of the other; along the border rather than
     // across sheets.
-    std::vector<Index> way_below(const Part& part) const {
-        const EdgeLine& line = part.line;
-        const auto& [from, to] = part.feet;
+    std::vector<Index> way_below(const EdgeLine& line) const {
+        const std::vector<Index> goals = feet_of(line.ends[1], line.points.back());
         const double reach = kCreaseReach * tolerance_;
         std::unordered_map<Index, View> views;  // a step leads to a vertex from all sides
         const auto view_of = [&](Index v) -> const View& {
@@ -210,22 +196,18 @@ class Strips {
             }
             return view->second;
         };
-        const auto is_near = [&](Index v) { return view_of(v).away <= reach; };
-        if (!std::ranges::any_of(from, is_near) || !std::ranges::any_of(to, is_near)) {
-            return {};
-        }
         const auto cost = [&](Index v, Index next) {
             const View& view = view_of(next);
             // A step across the middle of a loop would cut it short.
             const double step = std::max(distance(complex_.vertices[v], complex_.vertices[next]),
                                          std::abs(view.position - view_of(v).position));
             const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
-            return view.away > reach
+            return std::max(view.away, view_of(v).away) > reach
                        ? kInfinity
                        : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
-        const auto is_foot = [&goals = part.feet[1]](Index v) { return std::ranges::binary_search(goals, v); };
-        const CheapestWays ways(neighbors_, from, is_foot, cost);
+        const auto is_foot = [&](Index v) { return std::ranges::binary_search(goals, v); };
+        const CheapestWays ways(neighbors_, feet_of(line.ends[0], line.points.front()), is_foot, cost);
         return ways.way_to(ways.goal);
     }
 
@@ -255,47 +237,24 @@ class Strips {
         return is_place(corner) ? line.points[number_of(corner)] : complex_.vertices[corner];
     }
 
-    // From the boundary, less than 0 outside.
-    std::vector<double> depths_of(const std::vector<Point>& points) const {
-        const auto nearest = nearest_of(solid_, points, std::vector<double>(points.size(), kInfinity));
-        const std::vector<std::uint8_t> sides = sides_of(solid_, points);
-        std::vector<double> result;
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            result.push_back(nearest[i] ? (sides[i] != 0 ? 1.0 : -1.0) * distance(points[i], *nearest[i]) : 0.0);
-        }
-        return result;
-    }
-
-    // Which triangles belong to the sheet of the edge: balls at their vertices touch both sides of it, or nearly so,
-    // and the ball in the middle is in the solid.
-    std::vector<std::uint8_t> are_valid(const std::vector<Triangle>& strip, const std::vector<Index>& way,
-                                        const EdgeLine& line) const {
-        auto points = each_of<Point>(way, [&](Index v) { return complex_.vertices[v]; });
+    // Which triangles belong to the sheet of the edge: both sides of it are equally far from their vertices, or nearly
+    // so, and a ball in the middle that touches them is in the solid.
+    std::vector<std::uint8_t> are_valid(const std::vector<Triangle>& strip, const EdgeLine& line) const {
+        std::vector<std::uint8_t> result;
+        std::vector<Point> middles;
+        std::vector<double> radii;
         for (const Triangle& triangle : strip) {
             const auto& [a, b, c] = triangle;
-            points.push_back((1.0 / 3.0) * (at(a, line) + at(b, line) + at(c, line)));
-        }
-        const std::vector<double> rooms = depths_of(points);
-        std::map<Index, double> radii;
-        for (std::size_t i = 0; i < way.size(); ++i) {
-            radii[way[i]] = std::abs(rooms[i]);
-        }
-        std::vector<std::uint8_t> result(strip.size(), 1);
-        std::vector<std::uint8_t> is_inside(strip.size());
-        for (std::size_t f = 0; f < strip.size(); ++f) {
-            double wanted = 0.0;
-            for (const Index corner : strip[f]) {
-                if (is_place(corner)) {
-                    continue;
-                }
-                const double radius = radii.at(corner);
-                const View view = seen_from(complex_.vertices[corner], line);
-                wanted += radius / 3.0;
-                if (view.farther - view.nearer > 2.0 * tolerance_ || radius < view.nearer - tolerance_) {
-                    result[f] = 0;
+            middles.push_back((1.0 / 3.0) * (at(a, line) + at(b, line) + at(c, line)));
+            radii.push_back(0.0);
+            result.push_back(1);
+            for (const Index corner : triangle) {
+                const View view = seen_from(at(corner, line), line);
+                radii.back() += view.nearer / 3.0;
+                if (view.farther - view.nearer > 2.0 * tolerance_) {
+                    result.back() = 0;
                 }
             }
-            is_inside[f] = wanted > rooms[way.size() + f] + tolerance_ ? 0 : 1;
         }
         // Short stretches that are off go on.
         for_each_run(std::vector(result), [&](std::size_t first, std::size_t last) {
@@ -305,15 +264,19 @@ class Strips {
                 std::ranges::fill(std::span(result).subspan(first, last - first), std::uint8_t{1});
             }
         });
+        const auto nearest = nearest_of(solid_, middles, std::vector<double>(middles.size(), kInfinity));
+        const std::vector<std::uint8_t> sides = sides_of(solid_, middles);
         for (std::size_t f = 0; f < strip.size(); ++f) {
-            result[f] &= is_inside[f];
+            const double away = nearest[f] ? distance(middles[f], *nearest[f]) : 0.0;
+            if (radii[f] > (sides[f] != 0 ? away : -away) + tolerance_) {
+                result[f] = 0;
+            }
         }
         return result;
     }
 
     // Adds a part of a strip. A part that begins or ends in a corner that is there has the edge to it.
-    bool add_run(std::span<const Triangle> run, const Part& part, bool is_first, bool is_last) {
-        const EdgeLine& line = part.line;
+    bool add_run(std::span<const Triangle> run, const EdgeLine& line, bool is_first, bool is_last) {
         const std::size_t last_place = line.points.size() - 1;
         const auto touches = [&](const Triangle& triangle, std::size_t place) {
             return std::ranges::find(triangle, place_of(place)) != triangle.end();
@@ -341,12 +304,12 @@ class Strips {
                 if (is_place(corner)) {
                     const auto [target, is_new] = targets.try_emplace(number_of(corner), kNone);
                     if (is_new) {
-                        target->second = target_at(number_of(corner), part);
+                        target->second = target_at(number_of(corner), line);
                     }
                     corner = target->second;
                 }
             }
-            note_feet(part, triangle);
+            note_feet(line, triangle);
             const auto& [n, m] = line.normals[segment];
             const auto contacts =
                 complex_.has_contacts() ? std::optional(added_contacts(triangle, {n, m})) : std::nullopt;
@@ -358,17 +321,17 @@ class Strips {
     }
 
     // The number of an end at that place, if it is one.
-    static Index end_at(std::size_t place, const Part& part) {
-        return place == 0 ? part.ends[0] : place + 1 == part.line.points.size() ? part.ends[1] : kNone;
+    static Index end_at(std::size_t place, const EdgeLine& line) {
+        return place == 0 ? line.ends[0] : place + 1 == line.points.size() ? line.ends[1] : kNone;
     }
 
     // The vertex for a place.
-    Index target_at(std::size_t place, const Part& part) {
-        const Index end = end_at(place, part);
+    Index target_at(std::size_t place, const EdgeLine& line) {
+        const Index end = end_at(place, line);
         if (end != kNone && corners_[end].vertex != kNone) {
             return corners_[end].vertex;
         }
-        const Index vertex = add_vertex(complex_, {part.line.points[place], 0.0}, {VertexKind::kSharpEdge});
+        const Index vertex = add_vertex(complex_, {line.points[place], 0.0}, {VertexKind::kSharpEdge});
         ++statistics_.points;
         if (end != kNone) {
             corners_[end].vertex = vertex;
@@ -377,9 +340,9 @@ class Strips {
         return vertex;
     }
 
-    void note_feet(const Part& part, const Triangle& triangle) {
+    void note_feet(const EdgeLine& line, const Triangle& triangle) {
         for (const Index corner : triangle) {
-            if (const Index end = is_place(corner) ? end_at(number_of(corner), part) : kNone; end != kNone) {
+            if (const Index end = is_place(corner) ? end_at(number_of(corner), line) : kNone; end != kNone) {
                 std::set<Index>& feet = corners_[end].feet;
                 std::ranges::copy_if(triangle, std::inserter(feet, feet.end()), [](Index at) { return !is_place(at); });
             }
