@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
+#include "axis/complex.hpp"
 #include "base/angles.hpp"
 #include "base/grouped.hpp"
 #include "spatial/weld.hpp"
@@ -69,49 +69,39 @@ std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges) {
     return lines;
 }
 
-std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p) {
-    std::pair<Point, double> result{line.front(), 0.0};
-    double position = 0.0;
-    for (std::size_t k = 1; k < line.size(); ++k) {
-        const Point way = line[k] - line[k - 1];
-        const double t = std::clamp(dot(p - line[k - 1], way) / dot(way, way), 0.0, 1.0);
-        const Point place = line[k - 1] + t * way;
+std::pair<Point, double> nearest_on(const EdgeLine& line, const Point& p) {
+    std::pair<Point, double> result{line.points.front(), 0.0};
+    for (std::size_t k = 0; k < line.normals.size(); ++k) {
+        const Point way = line.points[k + 1] - line.points[k];
+        const double t = std::clamp(dot(p - line.points[k], way) / dot(way, way), 0.0, 1.0);
+        const Point place = line.points[k] + t * way;
         if (squared_distance(p, place) < squared_distance(p, result.first)) {
-            result = {place, position + t * norm(way)};
+            result = {place, line.positions[k] + t * norm(way)};
         }
-        position += norm(way);
     }
     return result;
 }
 
 EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag) {
-    const std::size_t count = line.normals.size();
     const auto at = [&](double position) {
-        const double along = std::min(position > line.length() ? position - line.length() : position, line.length());
-        const auto next = std::upper_bound(line.positions.begin() + 1, line.positions.end() - 1, along);
-        const auto k = static_cast<std::size_t>(next - line.positions.begin());
-        const double t = (along - line.positions[k - 1]) / (line.positions[k] - line.positions[k - 1]);
-        return std::pair(line.points[k - 1] + t * (line.points[k] - line.points[k - 1]), line.normals[k - 1]);
+        const std::size_t k = line.part_at(position);
+        const double t = (position - line.positions[k]) / (line.positions[k + 1] - line.positions[k]);
+        return std::pair(line.points[k] + std::min(t, 1.0) * (line.points[k + 1] - line.points[k]), line.normals[k]);
     };
     // All points of the line in between, then those of them that are needed.
     EdgeLine whole = line_from(at(from).first);
-    for (std::size_t k = 1; k < 2 * count; ++k) {
-        const double position = line.positions[(k - 1) % count + 1] + (k > count ? line.length() : 0.0);
-        if (position > from && position < to) {
-            add_point(whole, line.points[(k - 1) % count + 1], line.normals[(k - 1) % count]);
+    for (std::size_t k = 1; k < line.normals.size(); ++k) {
+        if (line.positions[k] > from && line.positions[k] < to) {
+            add_point(whole, line.points[k], line.normals[k - 1]);
         }
     }
     add_point(whole, at(to).first, at(to).second);
     EdgeLine result = line_from(whole.points.front());
     for (std::size_t first = 0; first + 1 < whole.points.size();) {
         const auto stays_near = [&](std::size_t last) {
-            const std::array ends{whole.points[first], whole.points[last]};
-            for (std::size_t k = first + 1; k < last; ++k) {
-                if (distance(nearest_on(ends, whole.points[k]).first, whole.points[k]) > sag) {
-                    return false;
-                }
-            }
-            return true;
+            return std::all_of(&whole.points[first], &whole.points[last], [&](const Point& p) {
+                return segment_distance(p, whole.points[first], whole.points[last]) <= sag;
+            });
         };
         std::size_t last = first + 1;
         while (last + 1 < whole.points.size() && whole.positions[last + 1] - whole.positions[first] <= step &&

@@ -3,6 +3,7 @@
 /// The sharp edges of a solid as lines, each from where edges meet, or end, to the next such point.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -29,16 +30,22 @@ struct EdgeLine {
 
     bool is_closed() const { return ends[0] == kNone; }
     double length() const { return positions.back(); }
+
+    /// The number of the part at a position; where two meet that of the second.
+    std::size_t part_at(double position) const {
+        const auto next = std::upper_bound(positions.begin() + 1, positions.end() - 1, position);
+        return static_cast<std::size_t>(next - positions.begin()) - 1;
+    }
 };
 
 /// Lines of equal edges come in the same order.
 std::vector<EdgeLine> edge_lines(std::span<const SharpEdge> edges);
 
-/// The nearest point on a line of several parts, and how far along it that is.
-std::pair<Point, double> nearest_on(std::span<const Point> line, const Point& p);
+/// The nearest point on a line, and how far along it that is.
+std::pair<Point, double> nearest_on(const EdgeLine& line, const Point& p);
 
-/// The part of a line between two positions, in pieces no longer than `step`; of a closed one `to` may be larger than
-/// its length. Points of the line from which its pieces stay within `sag` are left out.
+/// The part of a line between two positions, in pieces no longer than `step`. Points of the line from which its pieces
+/// stay within `sag` are left out.
 EdgeLine section_of(const EdgeLine& line, double from, double to, double step, double sag);
 
 }  // namespace scaleaxis::inline v1

@@ -176,9 +176,8 @@ class Strips {
     };
 
     static View seen_from(const Point& p, const EdgeLine& line) {
-        const auto [place, position] = nearest_on(line.points, p);
-        const auto after = std::upper_bound(line.positions.begin() + 1, line.positions.end() - 1, position);
-        const auto& [n, m] = line.normals[static_cast<std::size_t>(after - line.positions.begin()) - 1];
+        const auto [place, position] = nearest_on(line, p);
+        const auto& [n, m] = line.normals[line.part_at(position)];
         const auto [nearer, farther] = std::minmax({dot(n, place - p), dot(m, place - p)});
         return {position, distance(p, place), nearer, farther};
     }
@@ -215,7 +214,7 @@ class Strips {
     std::vector<Triangle> strip_between(const std::vector<Index>& way, const EdgeLine& line) const {
         std::vector<Triangle> strip;
         const auto positions =  // along the line
-            each_of<double>(way, [&](Index v) { return nearest_on(line.points, complex_.vertices[v]).second; });
+            each_of<double>(way, [&](Index v) { return nearest_on(line, complex_.vertices[v]).second; });
         const std::size_t last = line.points.size() - 1;
         std::size_t k = 0;
         for (std::size_t i = 0; i + 1 < way.size() || k < last;) {
