@@ -44,10 +44,16 @@ using Triangle = std::array<Index, 3>;
 
 bool is_place(Index corner) { return corner < 0; }
 std::size_t number_of(Index corner) { return static_cast<std::size_t>(-1 - corner); }
+std::size_t first_place_of(const Triangle& triangle) { return number_of(triangle[2]); }
 std::size_t last_place_of(const Triangle& triangle) {
     return number_of(is_place(triangle[1]) ? triangle[1] : triangle[2]);
 }
 Index place_of(std::size_t number) { return -1 - static_cast<Index>(number); }
+
+// The length of a line above a run of triangles.
+double length_above(std::span<const Triangle> run, const EdgeLine& line) {
+    return line.positions[last_place_of(run.back())] - line.positions[first_place_of(run.front())];
+}
 
 // Calls `visit(first, last)` for the runs of equal values, of which `last` is no part.
 template <class Visit>
@@ -257,9 +263,7 @@ class Strips {
         }
         // Short stretches that are off go on.
         for_each_run(std::vector(result), [&](std::size_t first, std::size_t last) {
-            const double length =
-                line.positions[last_place_of(strip[last - 1])] - line.positions[number_of(strip[first][2])];
-            if (length < tolerance_) {
+            if (length_above(std::span(strip).subspan(first, last - first), line) < tolerance_) {
                 std::ranges::fill(std::span(result).subspan(first, last - first), std::uint8_t{1});
             }
         });
@@ -276,46 +280,39 @@ class Strips {
 
     // Adds a part of a strip. A part that begins or ends in a corner that is there has the edge to it.
     bool add_run(std::span<const Triangle> run, const EdgeLine& line, bool is_first, bool is_last) {
-        const std::size_t last_place = line.points.size() - 1;
-        const auto touches = [&](const Triangle& triangle, std::size_t place) {
-            return std::ranges::find(triangle, place_of(place)) != triangle.end();
-        };
-        while (!is_first && !run.empty() && touches(run.front(), 0)) {
+        while (!is_first && !run.empty() && first_place_of(run.front()) == 0) {
             run = run.subspan(1);
         }
-        while (!is_last && !run.empty() && touches(run.back(), last_place)) {
+        while (!is_last && !run.empty() && last_place_of(run.back()) + 1 == line.points.size()) {
             run = run.first(run.size() - 1);
         }
-        if (run.empty()) {
+        if (run.empty() || (!(is_first && is_last) && length_above(run, line) < tolerance_)) {
             return false;
         }
-        const std::size_t from = number_of(run.front()[2]);
-        const std::size_t to = last_place_of(run.back());
-        const double length = line.positions[to] - line.positions[from];
-        if (!(is_first && is_last) && length < tolerance_) {
-            return false;
-        }
-        std::map<std::size_t, Index> targets;
+        std::map<Index, Corner> places;  // those between the ends
         for (const Triangle& triangle : run) {
-            const std::size_t segment = std::min(number_of(triangle[2]), line.normals.size() - 1);
+            std::vector<Index> feet;
+            std::ranges::remove_copy_if(triangle, std::back_inserter(feet), is_place);
             Triangle corners = triangle;
             for (Index& corner : corners) {
                 if (is_place(corner)) {
-                    const auto [target, is_new] = targets.try_emplace(number_of(corner), kNone);
-                    if (is_new) {
-                        target->second = target_at(number_of(corner), line);
+                    const Index end = end_at(number_of(corner), line);
+                    Corner& target = end == kNone ? places[corner] : corners_[end];
+                    if (target.vertex == kNone) {
+                        target.vertex = add_vertex(complex_, {at(corner, line), 0.0}, {VertexKind::kSharpEdge});
+                        ++statistics_.points;
+                        statistics_.corners += end != kNone && is_corner(end) ? 1 : 0;
                     }
-                    corner = target->second;
+                    target.feet.insert(feet.begin(), feet.end());
+                    corner = target.vertex;
                 }
             }
-            note_feet(line, triangle);
-            const auto& [n, m] = line.normals[segment];
-            const auto contacts =
-                complex_.has_contacts() ? std::optional(added_contacts(triangle, {n, m})) : std::nullopt;
+            const auto& [n, m] = line.normals[std::min(first_place_of(triangle), line.normals.size() - 1)];
+            const auto contacts = complex_.has_contacts() ? std::optional(added_contacts(feet, {n, m})) : std::nullopt;
             const double angle = angle_of_cosine(std::clamp(dot(n, m), -1.0, 1.0)) / kDegree;
             add_face(complex_, corners, {0.5 * angle, 0, contacts});
         }
-        statistics_.length += length;
+        statistics_.length += length_above(run, line);
         return true;
     }
 
@@ -324,35 +321,9 @@ class Strips {
         return place == 0 ? line.ends[0] : place + 1 == line.points.size() ? line.ends[1] : kNone;
     }
 
-    // The vertex for a place.
-    Index target_at(std::size_t place, const EdgeLine& line) {
-        const Index end = end_at(place, line);
-        if (end != kNone && corners_[end].vertex != kNone) {
-            return corners_[end].vertex;
-        }
-        const Index vertex = add_vertex(complex_, {line.points[place], 0.0}, {VertexKind::kSharpEdge});
-        ++statistics_.points;
-        if (end != kNone) {
-            corners_[end].vertex = vertex;
-            statistics_.corners += is_corner(end) ? 1 : 0;
-        }
-        return vertex;
-    }
-
-    void note_feet(const EdgeLine& line, const Triangle& triangle) {
-        for (const Index corner : triangle) {
-            if (const Index end = is_place(corner) ? end_at(number_of(corner), line) : kNone; end != kNone) {
-                std::set<Index>& feet = corners_[end].feet;
-                std::ranges::copy_if(triangle, std::inserter(feet, feet.end()), [](Index at) { return !is_place(at); });
-            }
-        }
-    }
-
-    // Where the ball between the vertices of a triangle that lie inside touches the planes on both sides of the edge.
-    std::array<Index, 2> added_contacts(const Triangle& triangle, const std::array<Point, 2>& normals) {
-        std::vector<Index> feet;
-        std::ranges::copy_if(triangle, std::back_inserter(feet), [](Index corner) { return !is_place(corner); });
-        const auto [middle, radius] = mean_ball(complex_, feet);
+    // Where the ball between vertices touches the planes on both sides of the edge.
+    std::array<Index, 2> added_contacts(std::span<const Index> vertices, const std::array<Point, 2>& normals) {
+        const auto [middle, radius] = mean_ball(complex_, vertices);
         std::array<Index, 2> contacts{};
         for (int side = 0; side < 2; ++side) {
             contacts[side] = static_cast<Index>(complex_.boundary_vertices.size());
