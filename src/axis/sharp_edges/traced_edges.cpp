@@ -27,9 +27,6 @@ namespace {
 constexpr double kStep = 0.9;       // along an edge, from place to place; nearer ones say the same
 constexpr double kLinkReach = 2.5;  // so far ahead the next place of an edge may be
 
-// Around rims steps are longer. Two ends that take longer ones than this towards each other pass.
-constexpr double kMostStep = 0.5 * kLinkReach;
-
 // A ball beside an edge sees its faces at the angle of their normals, but for what the union is off: of a hundred balls
 // beside the edges of boxes, prisms and cylinders one to five see less than this part of it, and those next to them
 // more. With 0.8 of it some lengths are traced from fewer places, half of it saves a quarter as much time.
@@ -154,10 +151,11 @@ class Tracing {
                    (steps * kStep * options_.tolerance) * direction_of(end);
         });
         std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, wants_corners);
+        // Steps are longer around rims. Two ends that take ones of more than half the reach towards each other pass.
         for (std::size_t k = 0; k < ends.size(); ++k) {
             if (creases[k] &&
                 !(is_ahead(ends[k], creases[k]->place) &&
-                  distance(creases[k]->place, place_at(ends[k])) <= kMostStep * options_.tolerance &&
+                  distance(creases[k]->place, place_at(ends[k])) <= 0.5 * kLinkReach * options_.tolerance &&
                   (wants_corners || std::abs(dot(creases[k]->direction, direction_of(ends[k]))) >= kSameDirection))) {
                 creases[k].reset();
             }
