@@ -12,6 +12,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -288,11 +289,17 @@ TEST(Clean, MakesCurvesOfNarrowSheets) {
     EXPECT_TRUE(ball.complex.edges.empty());
 }
 
-/// A plate of 12 × 6, and across it sheets of heights 0.5, at x = 3, and 2, at x = 8.
-MedialComplex plate_with_fins(double radius) {
+/// A parallelogram of `nu` × `nv` faces with the sides `u` and `v`.
+struct Grid {
+    Point origin;
+    Point u, v;
+    int nu, nv;
+};
+
+MedialComplex grids(std::span<const Grid> all, double radius) {
     std::vector<Point> vertices;
     std::vector<std::vector<Index>> faces;
-    const auto add = [&](const Point& origin, const Point& u, const Point& v, int nu, int nv) {
+    for (const auto& [origin, u, v, nu, nv] : all) {
         std::map<std::array<int, 2>, Index> grid;
         for (int i = 0; i <= nu; ++i) {
             for (int j = 0; j <= nv; ++j) {
@@ -310,11 +317,16 @@ MedialComplex plate_with_fins(double radius) {
                 faces.push_back({grid[{i, j}], grid[{i + 1, j}], grid[{i + 1, j + 1}], grid[{i, j + 1}]});
             }
         }
-    };
-    add({0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}, 48, 24);
-    add({3, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 2);
-    add({8, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 8);
+    }
     return with_radii(complex_by_hand(vertices, faces), [&](const Point&) { return radius; });
+}
+
+/// A plate of 12 × 6, and across it sheets of heights 0.5, at x = 3, and 2, at x = 8.
+MedialComplex plate_with_fins(double radius) {
+    return grids(std::array{Grid{{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}, 48, 24},
+                            Grid{{3, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 2},
+                            Grid{{8, 0, 0}, {0, 0.25, 0}, {0, 0, 0.25}, 24, 8}},
+                 radius);
 }
 
 TEST(Clean, TakesFinsThatAreLowAndKeepsOthers) {
@@ -348,6 +360,21 @@ TEST(Clean, KeepsAFinAlongAllOfItsSeam) {
     EXPECT_EQ(cleaned.statistics.sheets_after, 3) << "else the plate is one sheet around the end of the fin";
     EXPECT_TRUE(std::ranges::none_of(cleaned.complex.vertices, [](const Point& p) { return p.x == 3.0 && p.z > 0.0; }));
     EXPECT_TRUE(std::ranges::any_of(cleaned.complex.vertices, [](const Point& p) { return p.y > 5.9 && p.z > 0.0; }));
+}
+
+TEST(Clean, LeadsSeamsThatEndTooEarlyToTheBorder) {
+    // Two sheets at a right angle, and a third one, which ends 0.25 before they do: they are one sheet around its end.
+    const MedialComplex complex = grids(std::array{Grid{{0, 0, 0}, {0.25, 0, 0}, {0, 0.25, 0}, 16, 16},
+                                                   Grid{{0, 0, 0}, {0.25, 0, 0}, {0, 0, 0.25}, 16, 16},
+                                                   Grid{{0, 0, 0}, {0.25, 0, 0}, {0, -0.2, -0.2}, 15, 16}},
+                                        3.0);
+    ASSERT_EQ(complex.sheets, 2);
+    const MedialComplex cleaned = clean(complex, {.thickness = 0.2}).complex;
+    expect_well_formed(cleaned);
+    EXPECT_EQ(cleaned.sheets, 3);
+    EXPECT_EQ(topology(cleaned), known_topology(1, 0, 0));
+    EXPECT_EQ(clean(complex, {.thickness = 0.1}).complex.sheets, 2) << "too far";
+    EXPECT_EQ(clean(complex, {.thickness = 0.2, .finds_ridges = false}).complex.sheets, 2);
 }
 
 TEST(Clean, TakesCrumbsWithSmallBallsUnlessTheyStandAlone) {

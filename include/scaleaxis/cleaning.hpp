@@ -33,7 +33,8 @@ struct CleanOptions {
     double thickness = 0.0;
     /// Whether edges are cut at ridges that no vertex tells of: where fires from both of their ends meet so late that
     /// the ball there is to be kept, though those at the ends are not. Sheets whose faces are as large as the sheets
-    /// are wide would be lost that are wider than about 2 T.
+    /// are wide would be lost that are wider than about 2 T. Seams that end less than 2 T before the border of a sheet
+    /// folded along them end on it.
     bool finds_ridges = true;
 };
 

@@ -525,7 +525,8 @@ def clean(
 
     thickness: in the units of the complex.
     finds_ridges: whether edges are cut at ridges between their ends. Without, sheets whose faces are as large as the
-        sheets are wide are lost though they are wider than that.
+        sheets are wide are lost though they are wider than that, and seams that end less than twice the thickness
+        before the border of a sheet folded along them stay as they are.
     """
     with telling(progress) as tell:
         core = _core.clean(core_of(complex), thickness, finds_ridges, threads, tell)

@@ -15,6 +15,7 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
+#include "axis/edit/slivers.hpp"
 #include "axis/stages/curve_fire.hpp"
 #include "axis/stages/fire.hpp"
 #include "axis/stages/resolved_fire.hpp"
@@ -605,7 +606,10 @@ Halving cuts_for(const BurntComplex& burnt, const Opening& opening, const CleanO
 
 // What is left of a complex, and how much has gone.
 CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options, const Execution& execution) {
-    BurntComplex burnt = burnt_complex(given, options.finds_ridges ? kLateStart * options.thickness : kInfinity);
+    // Seams first, while their gaps are short: opening would widen them.
+    BurntComplex burnt = options.finds_ridges ? burnt_complex(with_seams_to_borders(given, 2.0 * options.thickness),
+                                                              kLateStart * options.thickness)
+                                              : burnt_complex(given, kInfinity);
     Opening opening(burnt, options.thickness);
     const int rounds = options.finds_ridges ? kMostCutRounds : 0;
     for (int round = 0; round < rounds && cut(burnt, cuts_for(burnt, opening, options)); ++round) {
