@@ -770,9 +770,10 @@ class Assembly {
 // of the solid do not count.
 double mean_radius(const Solid& solid, const Point& p, const Point& direction, double inscribed) {
     constexpr int kWays = 32;
+    constexpr double kMostWay = 3.0;  // in inscribed radii: sections up to three times as wide as high count whole
     double sum = 0.0;
     double count = 0.0;
-    for (const double way : ways_out(solid, p, direction, kWays, std::array{kMostRadii * inscribed})) {
+    for (const double way : ways_out(solid, p, direction, kWays, std::array{kMostWay * inscribed})) {
         if (way != kInfinity) {
             sum += way;
             count += 1.0;

@@ -18,14 +18,13 @@ namespace {
 
 constexpr int kMostHalvings = 6;
 constexpr double kMostRefitGrowth =
-    3.0;                       // so many times the vertices of the result may be needed before edges collapse
-constexpr double kHalf = 0.5;  // of the error: how far from touching balls may be; edges collapse within the rest
+    3.0;  // so many times the vertices of the result may be needed before edges collapse
 
 }  // namespace
 
 std::optional<MedialComplex> refitted(MedialComplex complex, const Solid& solid, const RefitOptions& options,
                                       const Execution& execution) {
-    const double error = kHalf * options.error;
+    const double error = 0.5 * options.error;  // from touching balls, and as much once edges have collapsed
     const auto most = static_cast<std::size_t>(kMostRefitGrowth * static_cast<double>(options.most_vertices));
     for (int round = 0; complex.vertices.size() <= most; ++round) {
         complex =
