@@ -113,8 +113,12 @@ void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::p
     std::set<fs::path> known;
     for (const fs::path& output : outputs) {
         if (!known.insert(canonical(output)).second) {
+            // What was meant as the value of an option before it, which takes none, is an input.
+            const std::string last = inputs.size() > 1 ? "; the last of " + std::to_string(inputs.size()) +
+                                                             " inputs is " + inputs.back().string()
+                                                       : "";
             throw InvalidOption("two results would both be written to " + output.string() +
-                                ": use {name} and {scale} in the name of the output, and each scale once");
+                                ": use {name} and {scale} in the name of the output, and each scale once" + last);
         }
     }
     for (const fs::path& input : inputs) {

@@ -1402,6 +1402,9 @@ TEST_F(CommandLine, WritesToStdout) {
         EXPECT_EQ(outcome.status, 2);
         expect_error_line(outcome, "would both be written to /dev/stdout");
     }
+    const Outcome no_value = run(with({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01"}));
+    EXPECT_EQ(no_value.status, 2);
+    expect_error_line(no_value, "the last of 2 inputs is 0.01");
     const Outcome unknown = run(with({"axis", "box.off", "-o", "-", "--output-format", "stl"}));
     EXPECT_EQ(unknown.status, 2);
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
