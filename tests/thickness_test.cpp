@@ -416,6 +416,39 @@ TEST(ThicknessImage, HasTheLargestBallAtEachPoint) {
     EXPECT_GT(inside, 1000);
 }
 
+TEST(ThicknessImage, OfRandomBallsThatHoldWholeBlocksIsThatOfAllOfThem) {
+    // On a grid as fine as this some balls hold blocks in which larger ones contain but a part of the points.
+    Image mask;
+    mask.sizes = {48, 48, 48};
+    mask.origin = {0, 0, 0};
+    mask.steps = {Point{1.0 / 48, 0, 0}, Point{0, 1.0 / 48, 0}, Point{0, 0, 1.0 / 48}};
+    mask.values.assign(std::size_t{48} * 48 * 48, 1.0F);
+    for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Random random(seed);
+        MedialComplex complex;
+        for (int i = 0; i < 20; ++i) {
+            complex.vertices.push_back(
+                {test::uniform(random, 0, 1), test::uniform(random, 0, 1), test::uniform(random, 0, 1)});
+            complex.radii.push_back(test::uniform(random, 0.3, 0.7));
+        }
+        complex.vertex_origins.assign(20, {VertexKind::kTouching});
+        const Image image = Thickness(complex, {.angle = 0.0}).image(mask);
+        int wrong = 0;
+        for (std::size_t n = 0; n < image.values.size(); ++n) {
+            const Point p = (1.0 / 48) * Point{static_cast<double>(n % 48), static_cast<double>(n / 48 % 48),
+                                               static_cast<double>(n / (48 * 48))};
+            double largest = 0.0;
+            for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+                largest = distance(p, complex.vertices[v]) <= complex.radii[v] ? std::max(largest, complex.radii[v])
+                                                                               : largest;
+            }
+            wrong += largest > 0.0 && std::abs(image.values[n] - 2.0 * largest) > 1e-5 ? 1 : 0;
+        }
+        EXPECT_EQ(wrong, 0);
+    }
+}
+
 TEST(SlabBalls, AreTheBestOfManyAtEachPoint) {
     std::mt19937_64 random(7);
     std::uniform_real_distribution<double> coordinate(-1.0, 1.0);

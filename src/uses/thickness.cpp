@@ -278,7 +278,7 @@ class BallPainter {
         });
         // Large ones first: most of the others then need no look.
         std::ranges::stable_sort(candidates, std::greater(), &SlabBound::most);
-        paint(candidates, block);
+        paint(candidates, block, 0.0);
     }
 
     template <class Visit>
@@ -307,13 +307,14 @@ class BallPainter {
         return least;
     }
 
-    void paint(const std::vector<SlabBound>& given, const Block& block) {
+    // \param least all points of the block lie in a ball as large, which need not be in the slabs given
+    void paint(const std::vector<SlabBound>& given, const Block& block, double least) {
         const auto known = least_radius(block);
         if (!known) {
             return;
         }
         const Ball around = ball_around(mask_, block);
-        double least = *known;  // all points of the block lie in a ball as large
+        least = std::max(least, *known);
         std::vector<SlabBound> candidates;
         for (const SlabBound& candidate : given) {
             if (candidate.most <= least) {
@@ -341,7 +342,7 @@ class BallPainter {
             return;
         }
         for (const Block& half : halves(block)) {
-            paint(candidates, half);
+            paint(candidates, half, least);
         }
     }
 
