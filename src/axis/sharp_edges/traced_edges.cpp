@@ -18,6 +18,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
+#include "spatial/point_tree.hpp"
 #include "spatial/weld.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -51,15 +52,7 @@ class Tracing {
         : solid_(solid), options_(options), accuracy_(kEdgeAccuracy * options.tolerance) {}
 
     std::vector<SharpEdge> run(const std::vector<Point>& points) {
-        const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            const auto is_near = [&](const Node& node) {
-                return distance(node.crease.place, creases[i]->place) <= kStep * options_.tolerance;
-            };
-            if (creases[i] && std::ranges::none_of(nodes_, is_near)) {
-                nodes_.push_back({*creases[i], distance(points[i], creases[i]->place)});
-            }
-        }
+        start(points);
         // More than it takes to go around any edge.
         const double most_steps = 4.0 * solid_.bounds().diagonal() / (kStep * options_.tolerance);
         std::vector<End> open = ends_of_edges();
@@ -74,6 +67,25 @@ class Tracing {
     }
 
    private:
+    // Places on the edges near points that are not near each other.
+    void start(const std::vector<Point>& points) {
+        const std::vector<std::optional<Crease>> creases = creases_near(solid_, points, options_, false);
+        const std::vector<Index> seen = indices_where(points.size(), [&](Index i) { return creases[i].has_value(); });
+        if (seen.empty()) {
+            return;
+        }
+        const PointTree tree = build_point_tree(each_of<Point>(seen, [&](Index i) { return creases[i]->place; }));
+        std::vector<std::uint8_t> is_near(seen.size());
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+            const Crease& crease = *creases[seen[k]];
+            if (is_near[k] == 0) {
+                nodes_.push_back({crease, distance(points[seen[k]], crease.place)});
+                for_each_point_near(tree, crease.place, kStep * options_.tolerance,
+                                    [&](Index at, double) { is_near[tree.order[at]] = 1; });
+            }
+        }
+    }
+
     const Point& place_at(const End& end) const { return nodes_[end.node].crease.place; }
 
     Point direction_of(const End& end) const {
@@ -103,16 +115,21 @@ class Tracing {
     // Joins ends that look at each other, the nearest ones first.
     void link(double reach) {
         const std::vector<End> ends = ends_of_edges();
+        if (ends.empty()) {
+            return;
+        }
+        const PointTree tree = build_point_tree(each_of<Point>(ends, [&](const End& end) { return place_at(end); }));
         std::vector<std::tuple<double, std::size_t, std::size_t>> links;  // distance, numbers of the ends
         for (std::size_t k = 0; k < ends.size(); ++k) {
-            for (std::size_t m = k + 1; m < ends.size(); ++m) {
+            for_each_point_near(tree, place_at(ends[k]), reach * options_.tolerance, [&](Index at, double) {
+                const auto m = static_cast<std::size_t>(tree.order[at]);
                 const double way = distance(place_at(ends[k]), place_at(ends[m]));
-                if (way <= reach * options_.tolerance && ends[k].node != ends[m].node &&
-                    is_ahead(ends[k], place_at(ends[m])) && is_ahead(ends[m], place_at(ends[k])) &&
+                if (k < m && ends[k].node != ends[m].node && is_ahead(ends[k], place_at(ends[m])) &&
+                    is_ahead(ends[m], place_at(ends[k])) &&
                     (way <= kLinkReach * options_.tolerance || has_edge_between(ends[k], ends[m]))) {
                     links.emplace_back(way, k, m);
                 }
-            }
+            });
         }
         std::ranges::sort(links);
         for (const auto& [way, k, m] : links) {
