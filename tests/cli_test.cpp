@@ -1402,12 +1402,16 @@ TEST_F(CommandLine, WritesToStdout) {
         EXPECT_EQ(outcome.status, 2);
         expect_error_line(outcome, "would both be written to /dev/stdout");
     }
-    const Outcome no_value = run(with({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01"}));
-    EXPECT_EQ(no_value.status, 2);
-    expect_error_line(no_value, "the last of 2 inputs is 0.01");
     const Outcome unknown = run(with({"axis", "box.off", "-o", "-", "--output-format", "stl"}));
     EXPECT_EQ(unknown.status, 2);
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
+}
+
+// A word after an option without a value is an input.
+TEST_F(CommandLine, TellsTheLastInputWhereTwoResultsWouldHaveOneName) {
+    const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01", "--delta", "0.1"});
+    EXPECT_EQ(outcome.status, 2);
+    expect_error_line(outcome, "the last of 2 inputs is 0.01");
 }
 
 // Six columns, the last of which are colours or a normal; four, which are balls: the name tells where the content

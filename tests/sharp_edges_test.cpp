@@ -15,13 +15,16 @@
 #include <utility>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "complexes.hpp"
+#include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/envelope.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
+#include "scaleaxis/image.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
@@ -591,6 +594,43 @@ TEST(SharpEdges, RoundAndNoisyShapesHaveNone) {
         const AxisAtScale axis = axis_of(*mesh_solid(mesh));
         EXPECT_EQ(axis.sharp_statistics->points, 0);
         EXPECT_TRUE(zero_balls(axis.complex).empty());
+    }
+}
+
+TEST(SharpEdges, OfARoughImageAreNoneThatAreShorterThanTheTolerance) {
+    // Waves in random directions, about five points of the grid long.
+    const std::uint64_t seed = 1;
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Random random(seed);
+    std::vector<std::pair<Point, double>> waves;
+    for (int k = 0; k < 40; ++k) {
+        const Point direction{uniform(random, -1.2, 1.2), uniform(random, -1.2, 1.2), uniform(random, -1.2, 1.2)};
+        waves.emplace_back(direction, uniform(random, 0.0, 6.3));
+    }
+    const auto field = [&](const Point& p) {
+        double sum = 0.0;
+        for (const auto& [direction, phase] : waves) {
+            sum += std::cos(dot(direction, p) + phase);
+        }
+        return std::max(sum, norm(p) - 9.0);
+    };
+    const Image image = sampled(field, {{-11.0, -11.0, -11.0}, {11.0, 11.0, 11.0}}, 23);
+    const double delta = 0.5;
+    const AxisAtScale axis = std::move(
+        scale_axis(*image_solid(image, {0.0, true}), {.delta = Length::absolute(delta), .scales = {1.0}}).axes[0]);
+    EXPECT_GT(axis.sharp_statistics->points, 0);
+    DisjointSets lines(axis.complex.vertices.size());
+    std::vector<double> lengths(axis.complex.vertices.size());
+    for (const bool adds : {false, true}) {
+        for (const auto& [a, b] : axis.complex.edges) {
+            if (axis.complex.radii[a] == 0.0 && axis.complex.radii[b] == 0.0) {
+                lines.join(a, b);
+                lengths[lines.find(a)] += adds ? distance(axis.complex.vertices[a], axis.complex.vertices[b]) : 0.0;
+            }
+        }
+    }
+    for (const double length : lengths) {
+        EXPECT_TRUE(length == 0.0 || length >= delta) << length;
     }
 }
 

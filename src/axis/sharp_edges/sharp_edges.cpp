@@ -54,7 +54,7 @@ bool is_flat(const EdgeLine& line, const Solid& solid, double tolerance) {
     return more >= 0;
 }
 
-// The edges whose sheets growing has left.
+// Those of the edges whose sheets growing has left. Lines shorter than the tolerance are those of rough surfaces.
 std::vector<EdgeLine> lines_among(std::vector<SharpEdge> edges, const SharpEdgeOptions& options) {
     std::erase_if(edges, [&](const SharpEdge& edge) {
         const auto& [a, b] = edge.normals;
@@ -62,7 +62,9 @@ std::vector<EdgeLine> lines_among(std::vector<SharpEdge> edges, const SharpEdgeO
         const double growth = std::sqrt(std::max(0.0, 0.5 * (1.0 + dot(a, b))));
         return options.scale * growth >= 1.0;
     });
-    return edge_lines(edges);
+    std::vector<EdgeLine> lines = edge_lines(edges);
+    std::erase_if(lines, [&](const EdgeLine& line) { return line.length() < options.tolerance; });
+    return lines;
 }
 
 void validate(const SharpEdgeOptions& options) {
@@ -80,17 +82,14 @@ SharpComplex extended_to_sharp_edges(MedialComplex complex, const Solid& solid, 
     return in_arena(execution, [&] {
         report(execution, kSharpEdgesStage, 0.0);
         SharpComplex result{std::move(complex), {}};
-        std::vector<EdgeLine> lines;
-        if (std::optional<std::vector<SharpEdge>> edges = solid.sharp_edges(std::max(options.angle, kLeastAngle))) {
-            lines = lines_among(std::move(*edges), options);
-            // Shorter ones are those of rough surfaces.
-            std::erase_if(lines, [&](const EdgeLine& line) { return line.length() < options.tolerance; });
+        std::optional<std::vector<SharpEdge>> known = solid.sharp_edges(std::max(options.angle, kLeastAngle));
+        std::vector<EdgeLine> lines =
+            lines_among(known ? std::move(*known) : traced_edges(result.complex, solid, options), options);
+        if (known) {
             for (const EdgeLine& line : lines) {
                 result.statistics.known += line.length();
             }
             std::erase_if(lines, [&](const EdgeLine& line) { return !is_flat(line, solid, options.tolerance); });
-        } else {
-            lines = lines_among(traced_edges(result.complex, solid, options), options);
         }
         report(execution, kSharpEdgesStage, 0.5);
         add_strips(result.complex, solid, options, lines, result.statistics);
