@@ -17,6 +17,7 @@
 #include <utility>
 #include <vector>
 
+#include "complexes.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/boundary.hpp"
@@ -31,6 +32,7 @@ namespace scaleaxis {
 namespace {
 
 using test::box_mesh;
+using test::complex_by_hand;
 using test::revolved_mesh;
 using test::sphere_mesh;
 using test::torus_mesh;
@@ -416,13 +418,26 @@ TEST(ThicknessImage, HasTheLargestBallAtEachPoint) {
     EXPECT_GT(inside, 1000);
 }
 
+// A mask that fills the unit cube.
+Image filled_cube(Index n) {
+    Image mask;
+    mask.sizes = {n, n, n};
+    mask.origin = {0, 0, 0};
+    mask.steps = {Point{1.0 / n, 0, 0}, Point{0, 1.0 / n, 0}, Point{0, 0, 1.0 / n}};
+    mask.values.assign(static_cast<std::size_t>(n) * n * n, 1.0F);
+    return mask;
+}
+
+// Of a value of such an image.
+Point place_in_cube(std::size_t k, Index n) {
+    const auto i = static_cast<Index>(k);
+    return (1.0 / n) *
+           Point{static_cast<double>(i % n), static_cast<double>(i / n % n), static_cast<double>(i / (n * n))};
+}
+
 TEST(ThicknessImage, OfRandomBallsThatHoldWholeBlocksIsThatOfAllOfThem) {
     // On a grid as fine as this some balls hold blocks in which larger ones contain but a part of the points.
-    Image mask;
-    mask.sizes = {48, 48, 48};
-    mask.origin = {0, 0, 0};
-    mask.steps = {Point{1.0 / 48, 0, 0}, Point{0, 1.0 / 48, 0}, Point{0, 0, 1.0 / 48}};
-    mask.values.assign(std::size_t{48} * 48 * 48, 1.0F);
+    const Image mask = filled_cube(48);
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         test::Random random(seed);
@@ -436,8 +451,7 @@ TEST(ThicknessImage, OfRandomBallsThatHoldWholeBlocksIsThatOfAllOfThem) {
         const Image image = Thickness(complex, {.angle = 0.0}).image(mask);
         int wrong = 0;
         for (std::size_t n = 0; n < image.values.size(); ++n) {
-            const Point p = (1.0 / 48) * Point{static_cast<double>(n % 48), static_cast<double>(n / 48 % 48),
-                                               static_cast<double>(n / (48 * 48))};
+            const Point p = place_in_cube(n, 48);
             double largest = 0.0;
             for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
                 largest = distance(p, complex.vertices[v]) <= complex.radii[v] ? std::max(largest, complex.radii[v])
@@ -445,6 +459,63 @@ TEST(ThicknessImage, OfRandomBallsThatHoldWholeBlocksIsThatOfAllOfThem) {
             }
             wrong += largest > 0.0 && std::abs(image.values[n] - 2.0 * largest) > 1e-5 ? 1 : 0;
         }
+        EXPECT_EQ(wrong, 0);
+    }
+}
+
+TEST(ThicknessImage, OfRandomTrianglesIsThatOfTheBallsAllOverThem) {
+    constexpr Index kTriangles = 6;
+    constexpr int kParts = 16;  // of the sides, between the balls that are tried
+    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Random random(seed);
+        const auto n = static_cast<Index>(11 + 7 * seed);
+        std::vector<Point> vertices;
+        std::vector<double> radii;
+        std::vector<std::vector<Index>> faces;
+        for (Index i = 0; i < 3 * kTriangles; ++i) {
+            vertices.push_back({test::uniform(random, 0, 1), test::uniform(random, 0, 1), test::uniform(random, 0, 1)});
+            radii.push_back(test::uniform(random, 0.05, 0.4));
+        }
+        std::vector<Ball> balls;
+        double spread = 0.0;  // any ball of a triangle lies in one of these that is as much larger
+        for (Index a = 0; a < 3 * kTriangles; a += 3) {
+            faces.push_back({a, a + 1, a + 2});
+            for (int i = 0; i <= kParts; ++i) {
+                for (int j = 0; j <= kParts - i; ++j) {
+                    const double u = static_cast<double>(i) / kParts;
+                    const double v = static_cast<double>(j) / kParts;
+                    balls.push_back(
+                        {vertices[a] + u * (vertices[a + 1] - vertices[a]) + v * (vertices[a + 2] - vertices[a]),
+                         radii[a] + u * (radii[a + 1] - radii[a]) + v * (radii[a + 2] - radii[a])});
+                }
+            }
+            for (const auto& [b, c] : {std::pair(a, a + 1), std::pair(a + 1, a + 2), std::pair(a + 2, a)}) {
+                spread =
+                    std::max(spread, (distance(vertices[b], vertices[c]) + std::abs(radii[b] - radii[c])) / kParts);
+            }
+        }
+        MedialComplex complex = complex_by_hand(vertices, faces, {});
+        complex.radii = radii;
+        const Image image = Thickness(complex, {.angle = 0.0}).image(filled_cube(n));
+        int inside = 0;
+        int wrong = 0;
+        for (std::size_t k = 0; k < image.values.size(); ++k) {
+            const Point p = place_in_cube(k, n);
+            double least = 0.0;
+            double most = 0.0;
+            for (const Ball& ball : balls) {
+                const double out = distance(p, ball.center) - ball.radius;
+                least = out <= 0.0 ? std::max(least, ball.radius) : least;
+                most = out <= spread ? std::max(most, ball.radius + spread) : most;
+            }
+            if (least > 0.0) {
+                ++inside;
+                const double found = 0.5 * image.values[k];
+                wrong += found < least - 0.01 / n || found > most ? 1 : 0;
+            }
+        }
+        EXPECT_GT(inside, n * n * n / 4);
         EXPECT_EQ(wrong, 0);
     }
 }
