@@ -34,4 +34,10 @@ std::vector<Index> covering_balls(std::span<const Ball> balls, std::span<const P
     return chosen;
 }
 
+FittedBalls selected(const FittedBalls& fitted, std::span<const Index> positions) {
+    return {each_of<Ball>(positions, [&](Index i) { return fitted.balls[i]; }),
+            each_of<Contacts>(positions, [&](Index i) { return fitted.contacts[i]; }),
+            each_of<Index>(positions, [&](Index i) { return fitted.given[i]; }), fitted.statistics};
+}
+
 }  // namespace scaleaxis::inline v1

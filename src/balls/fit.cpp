@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "balls/covering_balls.hpp"
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -145,20 +146,20 @@ void take(ContactSearch& search, const std::optional<Point>& nearest, const Ball
     search.radius = std::max(radius, search.inscribed);
 }
 
+// Of this file, so that `collect_blocks` finds how to join several.
 struct Part {
     FittedBalls fitted;
 };
 
-Part join(std::vector<Part>& parts) {
+Part join(const std::vector<Part>& parts) {
     Part all;
-    for (Part& part : parts) {
-        FitStatistics& statistics = all.fitted.statistics;
-        statistics.outside += part.fitted.statistics.outside;
-        statistics.inexact += part.fitted.statistics.inexact;
-        statistics.queries += part.fitted.statistics.queries;
-        append(all.fitted.balls, part.fitted.balls);
-        append(all.fitted.contacts, part.fitted.contacts);
-        append(all.fitted.given, part.fitted.given);
+    for (const auto& [fitted] : parts) {
+        all.fitted.statistics.outside += fitted.statistics.outside;
+        all.fitted.statistics.inexact += fitted.statistics.inexact;
+        all.fitted.statistics.queries += fitted.statistics.queries;
+        append(all.fitted.balls, fitted.balls);
+        append(all.fitted.contacts, fitted.contacts);
+        append(all.fitted.given, fitted.given);
     }
     return all;
 }
@@ -249,19 +250,6 @@ void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& soli
     }
 }
 
-void drop_repetitions(FittedBalls& fitted) {
-    const std::vector<Index> kept = distinct_positions(fitted.balls);
-    fitted.statistics.repeated = static_cast<Index>(fitted.balls.size() - kept.size());
-    for (std::size_t i = 0; i < kept.size(); ++i) {
-        fitted.balls[i] = fitted.balls[kept[i]];
-        fitted.contacts[i] = fitted.contacts[kept[i]];
-        fitted.given[i] = fitted.given[kept[i]];
-    }
-    fitted.balls.resize(kept.size());
-    fitted.contacts.resize(kept.size());
-    fitted.given.resize(kept.size());
-}
-
 }  // namespace
 
 void check_knows_nearest(const Solid& solid) {
@@ -280,7 +268,7 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
     return in_arena(execution, [&] {
         report(execution, "fit", 0.0);
         solid.prepare_nearest();
-        std::vector<Part> blocks = collect_blocks<Part>(
+        const std::vector<Part> blocks = collect_blocks<Part>(
             solid, balls.size(), kBlocksOfProgress,
             [&](std::size_t begin, std::size_t end, Part& out) {
                 fit_batch(balls.subspan(begin, end - begin), begin, solid, options.slack, bounds, out.fitted);
@@ -294,7 +282,9 @@ FittedBalls fit(std::span<const Ball> balls, const Solid& solid, const FitOption
                                      std::to_string(fitted.statistics.inexact) + " of " + std::to_string(balls.size()) +
                                      " balls: balls cannot be fitted to it"});
         }
-        drop_repetitions(fitted);
+        const std::vector<Index> kept = distinct_positions(fitted.balls);
+        fitted.statistics.repeated = static_cast<Index>(fitted.balls.size() - kept.size());
+        fitted = selected(fitted, kept);
         report(execution, "fit", 1.0);
         return fitted;
     });

@@ -88,13 +88,7 @@ FittedBalls needed_balls(const FittedBalls& fitted, const Samples& samples) {
     for (const Contacts& contacts : fitted.contacts) {
         points.insert(points.end(), contacts.begin(), contacts.end());
     }
-    FittedBalls needed;
-    for (const Index i : covering_balls(fitted.balls, points, kReach * samples.tolerance)) {
-        needed.balls.push_back(fitted.balls[i]);
-        needed.contacts.push_back(fitted.contacts[i]);
-        needed.given.push_back(fitted.given[i]);
-    }
-    return needed;
+    return selected(fitted, covering_balls(fitted.balls, points, kReach * samples.tolerance));
 }
 
 void fit_balls(const Samples& samples, const Solid& solid, const UnionOptions& options, SolidUnion& result, Run& run) {
