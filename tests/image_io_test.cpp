@@ -489,6 +489,7 @@ TEST_F(ImageIo, NiftiIsReadAsItWasWritten) {
                           {Point{0.4, 0.3, 0}, Point{-0.6, 0.8, 0}, Point{0, 0, 2}});
     for (const auto& [space, unit] : {std::array{"right-anterior-superior", "mm"},
                                       {"left-posterior-superior", "mm"},
+                                      {"left-anterior-superior", "mm"},
                                       {"right-anterior-superior", "m"},
                                       {"right-anterior-superior", "um"},
                                       {"right-anterior-superior", ""}}) {
@@ -500,8 +501,9 @@ TEST_F(ImageIo, NiftiIsReadAsItWasWritten) {
         EXPECT_EQ(read.sizes, image.sizes);
         EXPECT_EQ(read.values, image.values);
         EXPECT_EQ(read.unit, unit);
-        const double sign = image.space.starts_with("left") ? -1.0 : 1.0;
-        const auto turned = [&](const Point& p) { return Point{sign * p.x, sign * p.y, p.z}; };
+        const double x = image.space.starts_with("left") ? -1.0 : 1.0;
+        const double y = image.space.starts_with("left-posterior") ? -1.0 : 1.0;
+        const auto turned = [&](const Point& p) { return Point{x * p.x, y * p.y, p.z}; };
         EXPECT_LT(distance(read.origin, turned(image.origin)), 1e-5);
         for (int axis = 0; axis < 3; ++axis) {
             EXPECT_LT(distance(read.steps[axis], turned(image.steps[axis])), 1e-5);
@@ -524,6 +526,22 @@ TEST_F(ImageIo, CoordinatesAreThoseOfTheFile) {
         EXPECT_EQ(image.steps[0], (Point{2, 0, 0})) << space;
         EXPECT_EQ(image.steps[1], (Point{0, 3, 0})) << space;
         EXPECT_EQ(image.steps[2], (Point{0, 0, 4})) << space;
+    }
+}
+
+TEST_F(ImageIo, NrrdKeepsWhereCoordinatesPoint) {
+    Image image = sampled([](const Point& p) { return p.x; }, {4, 5, 6}, {1, 2, 3},
+                          {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+    for (const std::string space :
+         {"right-anterior-superior", "left-anterior-superior", "left-posterior-superior", "scanner-xyz", ""}) {
+        image.space = space;
+        write_image(folder() / "image.nrrd", image);
+        const Image read = read_image(folder() / "image.nrrd");
+        EXPECT_EQ(read.space, space);
+        EXPECT_EQ(read.origin, image.origin);
+        // Viewers refuse files that have both.
+        const std::string written = content("image.nrrd");
+        EXPECT_EQ(written.find("space dimension") == std::string::npos, !space.empty());
     }
 }
 

@@ -774,6 +774,50 @@ TEST(MeshSolid, SharpEdgesAreThoseOfAllPairsOfTriangles) {
     }
 }
 
+TEST(MeshSolid, SharpEdgesOfPartsThatOverlapOrTouchAreThoseOfTheSolid) {
+    const auto length_of = [](const std::vector<TriangleMesh>& parts) {
+        double length = 0.0;
+        const std::vector<SharpEdge> edges = mesh_solid(together(parts))->sharp_edges(61.0).value();
+        for (const auto& [ends, normals] : edges) {
+            length += distance(ends[0], ends[1]);
+        }
+        return length;
+    };
+    const TriangleMesh cube = box_mesh({0, 0, 0}, {1, 1, 1});
+    EXPECT_NEAR(length_of({cube, box_mesh({3, 0, 0}, {4, 1, 1})}), 24.0, 1e-9);
+    EXPECT_NEAR(length_of({cube, box_mesh({1, 0, 0}, {2, 1, 1})}), 16.0, 1e-9);                // side by side
+    EXPECT_NEAR(length_of({cube, box_mesh({0.25, 0.25, 1}, {0.75, 0.75, 2})}), 18.0, 1e-9);    // one on the other
+    EXPECT_NEAR(length_of({cube, box_mesh({0.25, 0.25, 0.5}, {0.75, 0.75, 2})}), 18.0, 1e-4);  // stuck into it
+
+    Random random;
+    for (int trial = 0; trial < 30; ++trial) {
+        SCOPED_TRACE("trial " + std::to_string(trial) + ", seed " + std::to_string(kSeed));
+        const Point least{random.between(-0.5, 0.9), random.between(-0.5, 0.9), random.between(-0.5, 0.9)};
+        const Point most = least + Point{random.between(0.2, 1.0), random.between(0.2, 1.0), random.between(0.2, 1.0)};
+        const std::array boxes{Box{{0, 0, 0}, {1, 1, 1}}, Box{least, most}};
+        double expected = 0.0;
+        for (int which = 0; which < 2; ++which) {
+            const Box& box = boxes[which];
+            const Box& other = boxes[1 - which];
+            for (double Point::*along : {&Point::x, &Point::y, &Point::z}) {
+                for (int corner = 0; corner < 8; ++corner) {
+                    Point start{(corner & 1) != 0 ? box.max.x : box.min.x, (corner & 2) != 0 ? box.max.y : box.min.y,
+                                (corner & 4) != 0 ? box.max.z : box.min.z};
+                    if (start.*along != box.min.*along) {
+                        continue;
+                    }
+                    expected += box.max.*along - box.min.*along;
+                    const double first = std::max(box.min.*along, other.min.*along);
+                    const double last = std::min(box.max.*along, other.max.*along);
+                    start.*along = 0.5 * (first + last);
+                    expected -= last > first && other.contains(start) ? last - first : 0.0;
+                }
+            }
+        }
+        EXPECT_NEAR(length_of({cube, box_mesh(least, most)}), expected, 1e-3);
+    }
+}
+
 TEST(MeshSolid, RefusesWhatBoundsNoSolid) {
     RepairedMesh open{sphere_mesh({0, 0, 0}, 1.0, 1), {}};
     open.report.fault = {"mesh.open", "3 edges have no neighbour"};

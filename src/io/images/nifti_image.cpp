@@ -211,10 +211,11 @@ Image read_nifti_image(std::string_view content, const std::filesystem::path& fi
     return image;
 }
 
-/// Where an image says that x and y point left and back, as DICOM has them, they are turned: NIfTI has right and front.
+/// Where an image says that x points left, or y back, as in DICOM, they are turned: NIfTI has right and front.
 void write_nifti_image(OutputFile& out, const Image& image) {
-    const bool is_turned = image.space.starts_with("left-posterior");
-    const auto turned = [&](const Point& p) { return is_turned ? Point{-p.x, -p.y, p.z} : p; };
+    const double to_right = image.space.starts_with("left-") ? -1.0 : 1.0;
+    const double to_front = image.space.ends_with("-posterior-superior") ? -1.0 : 1.0;
+    const auto turned = [&](const Point& p) { return Point{to_right * p.x, to_front * p.y, p.z}; };
     if (std::ranges::any_of(image.sizes, [](Index n) { return n > std::numeric_limits<std::int16_t>::max(); })) {
         throw unsupported("the image is too large for NIfTI-1, which ends at 32767 voxels a side; write .nrrd");
     }

@@ -320,15 +320,20 @@ Image read_nrrd_image(std::string_view content, const std::filesystem::path& fil
 }
 
 void write_nrrd_image(OutputFile& out, const Image& image) {
+    // Either the space or its dimension. Without the space, viewers take NRRD as left, posterior, superior.
+    constexpr std::array kSpaces{"right-anterior-superior", "left-anterior-superior", "left-posterior-superior",
+                                 "scanner-xyz"};
+    const bool has_space = std::ranges::find(kSpaces, image.space) != kSpaces.end();
     const Point& origin = image.origin;
     const auto& [a, b, c] = image.steps;
     const std::string quoted = '"' + image.unit + '"';
     const std::string units = image.unit.empty() ? "" : "space units: " + quoted + ' ' + quoted + ' ' + quoted + '\n';
     out.text("NRRD0004\n# made by scaleaxis\ntype: float\ndimension: 3\n",
-             "space dimension: 3\nsizes: ", image.sizes[0], ' ', image.sizes[1], ' ', image.sizes[2],
-             "\nspace directions: (", a.x, ',', a.y, ',', a.z, ") (", b.x, ',', b.y, ',', b.z, ") (", c.x, ',', c.y,
-             ',', c.z, ")\nkinds: domain domain domain\n", "endian: little\nencoding: raw\nspace origin: (", origin.x,
-             ',', origin.y, ',', origin.z, ")\n", units, '\n');
+             has_space ? "space: " + image.space : "space dimension: 3", "\nsizes: ", image.sizes[0], ' ',
+             image.sizes[1], ' ', image.sizes[2], "\nspace directions: (", a.x, ',', a.y, ',', a.z, ") (", b.x, ',',
+             b.y, ',', b.z, ") (", c.x, ',', c.y, ',', c.z, ")\nkinds: domain domain domain\n",
+             "endian: little\nencoding: raw\nspace origin: (", origin.x, ',', origin.y, ',', origin.z, ")\n", units,
+             '\n');
     for (const float value : image.values) {
         out.binary(value);
     }

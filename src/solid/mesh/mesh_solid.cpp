@@ -153,6 +153,9 @@ struct NearestSearch {
     TriangleBounds border_bounds;
 };
 
+/// So far beside a place, as a part of the size, another one tells what is there. Far more than rounding.
+constexpr double kAside = 1e-6;
+
 class MeshSolid final : public PointwiseSolid {
    public:
     MeshSolid(TriangleMesh mesh, const MeshReport& report)
@@ -256,7 +259,7 @@ class MeshSolid final : public PointwiseSolid {
             }
             const bool is_convex = dot(n, points[apex_of(triangles, opposite[side])] - start) < 0.0;
             if (is_convex) {
-                edges.push_back({{start, points[end_of(triangles, side)]}, {n, m}});
+                append_on_boundary({{start, points[end_of(triangles, side)]}, {n, m}}, edges);
             }
         }
         return edges;
@@ -290,6 +293,42 @@ class MeshSolid final : public PointwiseSolid {
         const std::vector<Point>& p = bvh_.mesh.vertices;
         const double cosine = std::abs(dot(unit(segment), unit(cross(p[v] - p[u], p[w] - p[u]))));
         return 2.0 * boundary_.gap / (norm(segment) * std::max(cosine, kLeastCosine));
+    }
+
+    /// Appends what of a convex edge is an edge of the solid: where parts overlap or touch, there may be solid beyond
+    /// it, or beyond one of its sides.
+    void append_on_boundary(const SharpEdge& edge, std::vector<SharpEdge>& edges) const {
+        if (boundary_.is_whole_surface) {
+            edges.push_back(edge);
+            return;
+        }
+        const auto& [start, end] = edge.ends;
+        const auto& [n, m] = edge.normals;
+        // Ahead of the edge, and above both sides.
+        std::array<Point, 3> aside{unit(n + m), n - unit(m - dot(m, n) * n), m - unit(n - dot(m, n) * m)};
+        std::vector<double> positions{0.0, 1.0};
+        for (Point& way : aside) {
+            way = (kAside * box_.diagonal() + 2.0 * boundary_.gap) * way;
+            for_each_crossing(bvh_, start + way, end + way,
+                              [&](Index, const SegmentCrossing& crossing) { positions.push_back(crossing.position); });
+        }
+        std::ranges::sort(positions);
+        const auto at = [&](double position) { return start + position * (end - start); };
+        bool goes_on = false;
+        for (std::size_t i = 0; i + 1 < positions.size(); ++i) {
+            if (positions[i + 1] - positions[i] <= kAside) {
+                continue;
+            }
+            const Point middle = at(0.5 * (positions[i] + positions[i + 1]));
+            const bool is_edge = std::ranges::all_of(
+                aside, [&](const Point& way) { return winding_number(bvh_, box_, middle + way) == 0; });
+            if (is_edge && goes_on) {
+                edges.back().ends[1] = at(positions[i + 1]);
+            } else if (is_edge) {
+                edges.push_back({{at(positions[i]), at(positions[i + 1])}, edge.normals});
+            }
+            goes_on = is_edge;
+        }
     }
 
     /// The triangles that have all edges this sharp as sides, and others: those with two corners around which the
@@ -327,10 +366,9 @@ class MeshSolid final : public PointwiseSolid {
 
     /// The same at a point nearby that is not on a side of the triangle.
     bool bounds_near(Index t, const Point& p) const {
-        constexpr double kInwards = 1e-6;
         const auto& [u, v, w] = bvh_.mesh.triangles[t];
         const std::vector<Point>& x = bvh_.mesh.vertices;
-        return is_on_boundary(t, (1.0 - kInwards) * p + (kInwards / 3.0) * (x[u] + x[v] + x[w]));
+        return is_on_boundary(t, (1.0 - kAside) * p + (kAside / 3.0) * (x[u] + x[v] + x[w]));
     }
 
     const NearestSearch& search() const {
