@@ -76,6 +76,18 @@ TEST(Filter, ByAreaAsksWholeSheets) {
     EXPECT_THROW(filter(row({0, 30}), by_area), UnusableInput) << "unknown angles";
 }
 
+TEST(Filter, ByAreaKeepsSheetsOfLargerBallsThanWhereTheyHang) {
+    MedialComplex fin =
+        complex_by_hand({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}},
+                        {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}}, {kLarge, kLarge, kSmall});
+    const FilterOptions by_area{.measure = SheetAngle::kByArea};
+    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 2U);
+    fin.radii[6] = 1.05;
+    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 2U) << "an error of the sampling";
+    fin.radii[6] = 1.2;
+    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 3U);
+}
+
 // A roof whose radius falls from 1 at the ridge to 0.5 at the eaves, one away: the cosine of the angle is 1/2.
 MedialComplex roof(const std::vector<double>& angles) {
     MedialComplex result = complex_by_hand({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.2, 1, 0}, {0, 0.5, 0}, {1, -1, 0}},
@@ -356,6 +368,29 @@ TEST(Filter, KeepsTheHomotopyTypeAndIsNested) {
             }
         }
         EXPECT_TRUE(same_bytes(filter(complex, {.angle = 0.0}).complex, complex));
+    }
+}
+
+TEST(Filter, KeepsBallsThatAreLargerThanAllAround) {
+    std::vector<Named> complexes = axes();
+    // A ball at the end of a rod, twice but for noise: from the rod a sliver leads to it.
+    const std::vector<Ball> rod{{{0, 0, 0}, 0.33},    {{0.0021, 0.00187, 0.00109}, 0.32882},
+                                {{0.30, 0, 0}, 0.12}, {{0.36, 0, 0}, 0.12},
+                                {{0.42, 0, 0}, 0.12}, {{0.48, 0, 0}, 0.12}};
+    complexes.push_back({"rod", medial_axis(rod).complex});
+    for (const auto& [name, complex] : complexes) {
+        SCOPED_TRACE(name);
+        std::vector<bool> is_largest(complex.vertices.size(), true);
+        for (const auto& [p, q] : complex.edges) {
+            is_largest[p] = is_largest[p] && complex.radii[p] > complex.radii[q];
+            is_largest[q] = is_largest[q] && complex.radii[q] > complex.radii[p];
+        }
+        const MedialComplex filtered = filter(complex).complex;
+        for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
+            EXPECT_TRUE(!is_largest[v] ||
+                        std::ranges::find(filtered.vertices, complex.vertices[v]) != filtered.vertices.end())
+                << complex.radii[v];
+        }
     }
 }
 

@@ -141,6 +141,31 @@ std::vector<KnownAxis> known_axes() {
     return result;
 }
 
+TEST(ScaleAxis, KeepsTheBallsAtTheEndsOfARod) {
+    for (const double small : {0.25, 0.33}) {
+        const auto dumbbell = [&](const Point& p) {
+            const double rod = std::max(std::hypot(p.y, p.z) - 0.12, std::abs(p.x) - 0.6);
+            return std::min({distance(p, {-0.6, 0, 0}) - 0.4, distance(p, {0.6, 0, 0}) - small, rod});
+        };
+        for (Index resolution = 48; resolution <= 56; resolution += 2) {
+            const Image image = sampled(dumbbell, {{-1.15, -1.15, -1.15}, {1.15, 1.15, 1.15}}, resolution);
+            for (const AxisAtScale& axis :
+                 scale_axis(*image_solid(image, {0.0, true}), {.delta = Length::relative(0.01), .scales = {1.0, 1.1}})
+                     .axes) {
+                SCOPED_TRACE(std::to_string(resolution) + " points, s = " + std::to_string(axis.complex.scale));
+                for (const Ball& ball : {Ball{{-0.6, 0, 0}, 0.4}, Ball{{0.6, 0, 0}, small}}) {
+                    double largest = 0.0;
+                    for (std::size_t v = 0; v < axis.complex.vertices.size(); ++v) {
+                        const bool is_inside = distance(axis.complex.vertices[v], ball.center) < 0.5 * ball.radius;
+                        largest = is_inside ? std::max(largest, axis.complex.radii[v]) : largest;
+                    }
+                    EXPECT_NEAR(largest, ball.radius, 0.15 * ball.radius);  // what an angle of 30 degrees may take
+                }
+            }
+        }
+    }
+}
+
 TEST(ScaleAxis, OfAKnownSolidIsWhereItShouldBe) {
     for (const KnownAxis& known : known_axes()) {
         for (const auto& shape : known.shapes) {

@@ -45,10 +45,11 @@ struct FilteredComplex {
 
 /// Removes sheets in order of their importance (object angle), the least first, as long as the removal is a sequence of
 /// elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves, chains of
-/// edges without faces, with the angles at which the boundary of the grown balls is seen. The results for growing
-/// angles are nested; with `kByArea`, which asks again where sheets have become one, they need not be.
-/// \param complex with object angles, unless `options.angle` is 0
-/// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
+/// edges without faces, with the angles at which the boundary of the grown balls is seen. Vertices whose balls are
+/// larger than all around them stay, whatever the angles there. The results for growing angles are nested; with
+/// `kByArea`, which asks again where sheets have become one, and keeps sheets whose balls are larger than those in
+/// which they meet others, they need not be. \param complex with object angles, unless `options.angle` is 0 \throws
+/// InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
 SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
                                         const Execution& execution = {});
 

@@ -17,17 +17,33 @@
 #include "base/compiler.hpp"
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
+// The vertices whose balls are larger than all around them.
+std::vector<std::uint8_t> maxima_of_radius(const MedialComplex& complex) {
+    std::vector<std::uint8_t> is_maximum(complex.vertices.size(), 1);
+    for (const auto& [p, q] : complex.edges) {
+        if (complex.radii[p] <= complex.radii[q]) {
+            is_maximum[p] = 0;
+        }
+        if (complex.radii[q] <= complex.radii[p]) {
+            is_maximum[q] = 0;
+        }
+    }
+    return is_maximum;
+}
+
 // Collapses parts, sheets or curves, from the remainder of a complex.
 class PartCollapse {
    public:
-    PartCollapse(const MedialComplex& complex, Remainder& remainder)
-        : complex_(complex), remainder_(remainder), bare_for_(complex.edges.size(), kNone) {}
+    // \param stays vertices that do
+    PartCollapse(const MedialComplex& complex, Remainder& remainder, std::vector<std::uint8_t> stays)
+        : complex_(complex), remainder_(remainder), stays_(std::move(stays)), bare_for_(complex.edges.size(), kNone) {}
 
     // Collapses a part onto the rest of the complex: its faces, and the edges that no face is left at. If something of
     // the part would remain, it undoes everything, leaves in `blocking_vertices` the ends of edges that did not vanish,
@@ -66,7 +82,8 @@ class PartCollapse {
         Collapses collapses(
             complex_, remainder_,
             [&](const ElementaryCollapse& collapse) {
-                return (collapse.has_face ? complex_.face_sheets : bare_for_)[collapse.element] == part;
+                return collapse.has_face ? complex_.face_sheets[collapse.element] == part
+                                         : bare_for_[collapse.element] == part && stays_[collapse.free] == 0;
             },
             [&](const ElementaryCollapse& collapse, bool) {
                 removed_.push_back(collapse);
@@ -98,6 +115,7 @@ class PartCollapse {
 
     const MedialComplex& complex_;
     Remainder& remainder_;
+    std::vector<std::uint8_t> stays_;
     std::vector<Index> bare_for_;  // the part that an edge without faces belongs to
     // Of the last call of `remove`, kept to save allocations: there are about as many parts as faces.
     std::vector<Index> bare_edges_;
@@ -136,6 +154,32 @@ Parts find_sheets(const MedialComplex& complex) {
     return parts;
 }
 
+// The sheets with balls that are larger, by more than errors, than all those in which they meet others.
+std::vector<std::uint8_t> sheets_of_largest_balls(const MedialComplex& complex) {
+    constexpr Index kSeveral = -2;
+    std::vector<Index> sheet_of(complex.vertices.size(), kNone);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            const bool is_other = sheet_of[v] != kNone && sheet_of[v] != complex.face_sheets[f];
+            sheet_of[v] = is_other ? kSeveral : complex.face_sheets[f];
+        }
+    }
+    for (const auto& [p, q] : curve_edges(complex)) {
+        sheet_of[p] = sheet_of[q] = kSeveral;
+    }
+    std::vector<double> inside(complex.sheets);
+    std::vector<double> shared(complex.sheets);
+    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+        for (const Index v : complex.faces[f]) {
+            double& largest = (sheet_of[v] == kSeveral ? shared : inside)[complex.face_sheets[f]];
+            largest = std::max(largest, complex.radii[v]);
+        }
+    }
+    return mapped<std::uint8_t>(inside.size(), [&](std::size_t sheet) {
+        return shared[sheet] > 0.0 && inside[sheet] > (1.0 + kRadiusError) * shared[sheet] ? 1 : 0;
+    });
+}
+
 // The sheets with the angles that a part of their area exceeds.
 Parts find_sheets_by_area(const MedialComplex& complex) {
     Parts parts;
@@ -158,6 +202,10 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
             }
         }
     });
+    const std::vector<std::uint8_t> is_center = sheets_of_largest_balls(complex);
+    for (std::size_t sheet = 0; sheet < is_center.size(); ++sheet) {
+        parts.importance[sheet] = is_center[sheet] != 0 ? kInfinity : parts.importance[sheet];
+    }
     return parts;
 }
 
@@ -190,11 +238,11 @@ std::vector<PartToRemove> find_candidates(const Parts& parts, double angle) {
 // theirs has become free, or something at a vertex by which they held the rest together.
 class PartRemoval {
    public:
-    PartRemoval(const MedialComplex& complex, const Parts& parts, Remainder& remainder)
+    PartRemoval(const MedialComplex& complex, const Parts& parts, Remainder& remainder, std::vector<std::uint8_t> stays)
         : complex_(complex),
           parts_(parts),
           remainder_(remainder),
-          collapse_(complex, remainder),
+          collapse_(complex, remainder, std::move(stays)),
           has_failed_(parts.size()) {}
 
     // Removes a part if it can be removed, and then always the least important one that this makes removable.
@@ -283,10 +331,10 @@ void prefetch_next(const MedialComplex& complex, const Parts& parts, const Remai
 
 // Always removes the least important part that can be removed. So what a smaller threshold removes comes first for a
 // larger one too, and the results are nested.
-void remove_parts(const MedialComplex& complex, const Parts& parts, double angle, Remainder& remainder,
-                  const Execution& execution) {
+void remove_parts(const MedialComplex& complex, const Parts& parts, double angle, std::vector<std::uint8_t> stays,
+                  Remainder& remainder, const Execution& execution) {
     const std::vector<PartToRemove> candidates = find_candidates(parts, angle);
-    PartRemoval remove_part(complex, parts, remainder);
+    PartRemoval remove_part(complex, parts, remainder, std::move(stays));
     for (std::size_t i = 0; i < candidates.size(); ++i) {
         if (i % 65536 == 0) {
             report(execution, "filter", static_cast<double>(i) / static_cast<double>(candidates.size()));
@@ -316,7 +364,8 @@ FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, con
         before = rest.faces.size();
         label_sheets(rest);
         Remainder remainder(rest);
-        remove_parts(rest, find_sheets_by_area(rest), angle + kClearlyWider, remainder, execution);
+        remove_parts(rest, find_sheets_by_area(rest), angle + kClearlyWider,
+                     std::vector<std::uint8_t>(rest.vertices.size()), remainder, execution);
         rest = complex_of(remainder, rest);
     }
     return with_statistics(std::move(rest), complex);
@@ -338,7 +387,7 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
         Parts parts;
         run_together([&] { remainder.emplace(complex); }, [&] { parts = find_sheets(complex); });
         add_curves(parts, complex, *remainder);
-        remove_parts(complex, parts, options.angle, *remainder, execution);
+        remove_parts(complex, parts, options.angle, maxima_of_radius(complex), *remainder, execution);
         FilteredComplex result = with_statistics(complex_of(*remainder, complex), complex);
         report(execution, "filter", 1.0);
         return result;
