@@ -167,6 +167,9 @@ std::string labels_in_words(const Image& image) {
             found.insert(value);
         }
     }
+    if (found.empty()) {
+        return "all its values are 0";
+    }
     const std::vector<float> values(found.begin(), found.end());
     return "its values " + listed(values, [](Words& text, float value) { text << value; }) +
            " are not whole numbers, as labels are; round them and save the image again, or choose an iso value, or all "
@@ -198,6 +201,9 @@ Image chosen_mask(Image image, const LoadOptions& options) {
     const std::vector<float> labels = chosen_labels(image, options);
     if (labels.empty() && !options.is_nonzero && !is_mask(image)) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
+        if (*least == 0.0F && *most == 0.0F) {
+            throw UnusableInput("nothing of the image is solid: all its values are 0");
+        }
         Words text;
         text << "what of the image is solid? Its values are " << *least << " ... " << *most
              << ": choose an iso value, labels, or all that is not 0";

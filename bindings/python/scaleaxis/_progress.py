@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+import numpy as np
+
 Tell = Callable[[str, float], object]
 """Called with the name of the stage and the part of the whole that is done. False cancels the call."""
 
@@ -29,7 +31,13 @@ def telling(progress: Progress) -> Iterator[Tell | None]:
 
             yield show
     elif callable(progress):
-        yield progress
+        told = progress
+
+        def tell(stage: str, fraction: float) -> object:
+            answer = told(stage, fraction)
+            return bool(answer) if isinstance(answer, np.bool_) else answer
+
+        yield tell
     else:
         raise TypeError(f"progress must be None, True or a function, not {type(progress).__name__}")
 

@@ -59,7 +59,9 @@ def _of_nibabel(image: Any) -> Image:
     affine = np.asarray(image.affine, dtype=np.float64)
     units = getattr(image.header, "get_xyzt_units", None)  # those of other formats than NIfTI have none
     unit = _UNITS_OF_NIBABEL.get(units()[0], "") if units else ""
-    return Image(np.asanyarray(image.dataobj), affine[:3, 3], affine[:3, :3].T, unit, "right-anterior-superior")
+    values = np.asanyarray(image.dataobj)
+    values = values.reshape(values.shape[:3] + tuple(n for n in values.shape[3:] if n != 1))
+    return Image(values, affine[:3, 3], affine[:3, :3].T, unit, "right-anterior-superior")
 
 
 def _unit_of_simpleitk(image: Any) -> str:

@@ -95,6 +95,22 @@ def test_progress_cancels(torus):
     assert time.process_time() - start < 1.5 and caught.value.code == "cancelled"
 
 
+@pytest.mark.parametrize("answer, cancels", [(np.bool_(False), True), (np.bool_(True), False), (0, False), (None, False)])
+def test_false_of_numpy_cancels_too(torus, answer, cancels):
+    told = []
+
+    def tell(stage, part):
+        told.append(stage)
+        return answer
+
+    if cancels:
+        with pytest.raises(scaleaxis.Cancelled):
+            scaleaxis.axis(torus, delta=0.03, progress=tell)
+    else:
+        scaleaxis.axis(torus, delta=0.03, progress=tell)
+    assert told
+
+
 def test_exceptions_of_the_progress_cancel(torus):
     def fail(stage, part):
         raise LookupError(stage)

@@ -135,6 +135,8 @@ def test_nibabel():
     values, _ = ball_voxels(6.0, 20)
     affine = np.array([[0, -2, 0, 10], [1, 0, 0, 20], [0, 0, 3, 30], [0, 0, 0, 1]], dtype=float)
     axis = scaleaxis.axis(nibabel.Nifti1Image((values > 0).astype(np.uint8), affine), delta=0.03)
+    with_time = nibabel.Nifti1Image((values > 0).astype(np.uint8)[..., None], affine)
+    assert np.array_equal(scaleaxis.axis(with_time, delta=0.03).vertices, axis.vertices)
     middle = (affine @ [9.5, 9.5, 9.5, 1.0])[:3]
     ends = axis.vertices.min(axis=0), axis.vertices.max(axis=0)
     assert np.mean(ends, axis=0) == pytest.approx(middle, abs=0.5)
@@ -342,6 +344,8 @@ def test_function_of_other_types():
         (np.ones((3, 3, 3)), {"spacing": [1, 1]}, "spacing must have 3 entries"),
         (np.ones((3, 3, 3)), {"direction": np.eye(2)}, "direction must be 3 × 3"),
         (np.full((3, 3, 3), np.nan), {}, "finite"),
+        (np.zeros((3, 3, 3), dtype=np.uint8), {}, "nothing of the image is solid: all its values are 0"),
+        (np.zeros((3, 3, 3), dtype=np.uint8), {"labels": 1}, "no voxel has the label 1: all its values are 0"),
         (np.zeros((3, 3, 3), dtype=complex), {}, "real numbers"),
         ("no/such/file.obj", {"spacing": 2}, "spacing has no effect on a file"),
     ],
