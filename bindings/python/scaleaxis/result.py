@@ -522,7 +522,8 @@ class Skeleton:
         """Rows of a table: volume, area, thickness, sheets, branches and topology of the solid, of its components, or
         of its parts, what belongs to each branch. `pandas.DataFrame` takes them.
 
-        vertices, faces: the closed surface of the solid, two arrays or one mesh; thickness is asked at its vertices.
+        vertices, faces: the closed surface of the solid, two arrays or one mesh; thickness is asked at its vertices. What
+            it has twice, as where parts overlap, counts twice: take `axis.mesh()` instead.
         angle: as for `thickness`.
         """
         axis = self._axis()
