@@ -38,19 +38,27 @@ bool is_coarse(const MedialComplex& complex) {
     return static_cast<double>(count_long_edges(complex)) > kCoarsePart * static_cast<double>(complex.edges.size());
 }
 
+bool has_any(const MedialComplex& complex, VertexKind kind) {
+    return std::ranges::find(complex.vertex_origins, kind, &VertexOrigin::kind) != complex.vertex_origins.end();
+}
+
+bool knows_balls(const MedialComplex& complex) {
+    return has_any(complex, VertexKind::kBall) || has_any(complex, VertexKind::kTouching);
+}
+
 }  // namespace
 
 MedialComplex read_stored_axis(const fs::path& path, const std::optional<double>& scale) {
     MedialComplex complex = read_axis(path);
     complex.scale = scale.value_or(complex.scale);
-    const auto has = [&](auto... kinds) {
-        return std::ranges::any_of(complex.vertex_origins,
-                                   [&](const VertexOrigin& origin) { return ((origin.kind == kinds) || ...); });
-    };
-    const bool knows_balls = has(VertexKind::kBall, VertexKind::kTouching);
     // The axis of a union of balls has none of radius 0: those are on sharp edges, up to which radii are linear.
-    const bool is_linear = is_coarse(complex) || has(VertexKind::kSharpEdge);
-    return !knows_balls && is_linear ? with_linear_radii(std::move(complex)) : complex;
+    const bool is_linear = is_coarse(complex) || has_any(complex, VertexKind::kSharpEdge);
+    return !knows_balls(complex) && is_linear ? with_linear_radii(std::move(complex)) : complex;
+}
+
+MedialComplex read_stored_solid(const fs::path& path, const std::optional<double>& scale) {
+    MedialComplex complex = read_stored_axis(path, scale);
+    return knows_balls(complex) ? complex : with_linear_radii(std::move(complex));
 }
 
 std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {

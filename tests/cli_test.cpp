@@ -20,6 +20,7 @@
 #include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <sstream>
@@ -1412,6 +1413,18 @@ TEST_F(CommandLine, TellsTheLastInputWhereTwoResultsWouldHaveOneName) {
     const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01", "--delta", "0.1"});
     EXPECT_EQ(outcome.status, 2);
     expect_error_line(outcome, "the last of 2 inputs is 0.01");
+}
+
+// What is between two balls belongs to the solid, whether the edge is shorter than their radii or longer.
+TEST_F(CommandLine, BallsOfMaAreInterpolatedAlongEdgesOfAnyLength) {
+    for (const double length : {0.05, 0.24, 0.25, 0.5}) {
+        SCOPED_TRACE(length);
+        write(folder_ / "two.ma", "2 1 0\nv 0 0 0 0.25\nv " + std::to_string(length) + " 0 0 0.25\ne 0 1\n");
+        ASSERT_EQ(run({"mesh", "two.ma", "-o", "two.off", "--delta", "0.005", "-q"}).status, 0);
+        const double volume = Json::parse(run({"info", "two.off", "--json"}).out)["mesh"]["volume"];
+        const double expected = std::numbers::pi * 0.0625 * (4.0 / 3.0 * 0.25 + length);
+        EXPECT_NEAR(volume, expected, 0.002 * expected);
+    }
 }
 
 // Six columns, the last of which are colours or a normal; four, which are balls: the name tells where the content
