@@ -302,7 +302,8 @@ class MeshSolid final : public PointwiseSolid {
             edges.push_back(edge);
             return;
         }
-        const auto& [start, end] = edge.ends;
+        const Point start = edge.ends[0];
+        const Point end = edge.ends[1];
         const auto& [n, m] = edge.normals;
         // Ahead of the edge, and above both sides.
         std::array<Point, 3> aside{unit(n + m), n - unit(m - dot(m, n) * n), m - unit(n - dot(m, n) * m)};
