@@ -201,14 +201,13 @@ Image chosen_mask(Image image, const LoadOptions& options) {
     const std::vector<float> labels = chosen_labels(image, options);
     if (labels.empty() && !options.is_nonzero && !is_mask(image)) {
         const auto [least, most] = std::ranges::minmax_element(image.values);
-        if (*least == 0.0F && *most == 0.0F) {
-            throw UnusableInput("nothing of the image is solid: all its values are 0");
+        if (*least != 0.0F || *most != 0.0F) {  // zeros are an empty mask
+            Words text;
+            text << "what of the image is solid? Its values are " << *least << " ... " << *most
+                 << ": choose an iso value, labels, or all that is not 0";
+            throw InvalidOption(Diagnostic{
+                .code = "option", .message = text.str(), .hints = {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
         }
-        Words text;
-        text << "what of the image is solid? Its values are " << *least << " ... " << *most
-             << ": choose an iso value, labels, or all that is not 0";
-        throw InvalidOption(Diagnostic{
-            .code = "option", .message = text.str(), .hints = {{"iso"}, {"label"}, {"nonzero"}, {"each-label"}}});
     }
     return mask(std::move(image), labels);
 }

@@ -344,7 +344,7 @@ def test_function_of_other_types():
         (np.ones((3, 3, 3)), {"spacing": [1, 1]}, "spacing must have 3 entries"),
         (np.ones((3, 3, 3)), {"direction": np.eye(2)}, "direction must be 3 × 3"),
         (np.full((3, 3, 3), np.nan), {}, "finite"),
-        (np.zeros((3, 3, 3), dtype=np.uint8), {}, "nothing of the image is solid: all its values are 0"),
+        (np.zeros((3, 3, 3), dtype=np.uint8), {}, "all voxels are 0: the mask is empty"),
         (np.zeros((3, 3, 3), dtype=np.uint8), {"labels": 1}, "no voxel has the label 1: all its values are 0"),
         (np.zeros((3, 3, 3), dtype=complex), {}, "real numbers"),
         ("no/such/file.obj", {"spacing": 2}, "spacing has no effect on a file"),
