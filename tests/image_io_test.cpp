@@ -490,6 +490,7 @@ TEST_F(ImageIo, NiftiIsReadAsItWasWritten) {
     for (const auto& [space, unit] : {std::array{"right-anterior-superior", "mm"},
                                       {"left-posterior-superior", "mm"},
                                       {"left-anterior-superior", "mm"},
+                                      {"left-posterior-superior-time", "mm"},
                                       {"right-anterior-superior", "m"},
                                       {"right-anterior-superior", "um"},
                                       {"right-anterior-superior", ""}}) {

@@ -214,7 +214,7 @@ Image read_nifti_image(std::string_view content, const std::filesystem::path& fi
 /// Where an image says that x points left, or y back, as in DICOM, they are turned: NIfTI has right and front.
 void write_nifti_image(OutputFile& out, const Image& image) {
     const double to_right = image.space.starts_with("left-") ? -1.0 : 1.0;
-    const double to_front = image.space.ends_with("-posterior-superior") ? -1.0 : 1.0;
+    const double to_front = image.space.find("-posterior-") != std::string::npos ? -1.0 : 1.0;
     const auto turned = [&](const Point& p) { return Point{to_right * p.x, to_front * p.y, p.z}; };
     if (std::ranges::any_of(image.sizes, [](Index n) { return n > std::numeric_limits<std::int16_t>::max(); })) {
         throw unsupported("the image is too large for NIfTI-1, which ends at 32767 voxels a side; write .nrrd");
