@@ -48,8 +48,9 @@ struct FilteredComplex {
 /// edges without faces, with the angles at which the boundary of the grown balls is seen. Vertices whose balls are
 /// larger than all around them stay, whatever the angles there. The results for growing angles are nested; with
 /// `kByArea`, which asks again where sheets have become one, and keeps sheets whose balls are larger than those in
-/// which they meet others, they need not be. \param complex with object angles, unless `options.angle` is 0 \throws
-/// InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
+/// which they meet others, they need not be.
+/// \param complex with object angles, unless `options.angle` is 0
+/// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
 SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},
                                         const Execution& execution = {});
 
