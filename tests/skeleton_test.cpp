@@ -26,6 +26,7 @@
 #include "folder.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
+#include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/filter.hpp"
 #include "scaleaxis/function.hpp"
@@ -142,6 +143,28 @@ TEST(Skeleton, OfAPlateAlmostSquareRunsAlongItsLongerSide) {
         EXPECT_LT(std::abs(along.y), 0.3 * std::abs(along.x));
         for (const Point& p : result.nodes) {
             EXPECT_NEAR(p.y, 4.0, 0.3);
+        }
+    }
+}
+
+/// Where a tube leaves a thicker one, nothing of the solid is narrower than the thin tube. Along the sheet between the
+/// two the balls are as small as the crotch is sharp.
+TEST(Skeleton, CrossesBetweenTubesWhereTheyAreWide) {
+    constexpr double kDelta = 0.1;
+    for (const double angle : {30.0, 45.0, 60.0, 90.0}) {
+        for (const double radius : {0.3, 0.5, 0.7, 1.0}) {
+            SCOPED_TRACE("a tube of radius " + std::to_string(radius) + " at " + std::to_string(angle) + " degrees");
+            const double turn = angle * std::numbers::pi / 180.0;
+            const auto solid = arms_solid(
+                {{{0, 0, -1}, 6.0, 1.0}, {{0, 0, 1}, 9.0, 1.0}, {{std::sin(turn), 0, std::cos(turn)}, 9.0, radius}},
+                11);
+            ScaleAxisOptions options{.delta = Length::absolute(kDelta), .scales = {1.0}};
+            options.reaches_sharp_edges = false;
+            const ScaleAxis axis = scale_axis(*solid, options);
+            const MedialComplex complex = clean(axis.axes[0].complex, {.thickness = 0.5 * kDelta}).complex;
+            const Skeleton result = skeleton(complex, *solid);
+            EXPECT_EQ(result.branches.size(), 3u);
+            EXPECT_GT(std::ranges::min(result.radii), 0.6 * radius);
         }
     }
 }

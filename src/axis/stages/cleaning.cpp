@@ -150,10 +150,10 @@ class Opening {
 struct Divided {
     MedialComplex complex;
     std::vector<double> radii;         // that the fire takes
-    std::vector<double> vertex_times;  // burn times
     std::vector<double> vertex_paths;  // ways of the fire within the sheets, the longest at each vertex
     std::vector<std::uint8_t> is_low;  // of each face: to go
-    std::vector<double> face_times;    // the latest burn time of its corners
+    std::vector<Index> parents;        // of each face, the one that was divided
+    std::vector<double> edge_times;
 };
 
 // Where the depth is zero on an edge from `a` to `b`. Around voids it is infinite: all of the edge is kept then.
@@ -213,7 +213,6 @@ class Division {
     void start() {
         result_.complex = vertices_of(complex_);
         result_.radii = radii_;
-        result_.vertex_times = fire_.vertex_times;
         result_.vertex_paths.resize(complex_.vertices.size());
         for (std::size_t s = 0; s < sectors_.vertices.size(); ++s) {
             double& path = result_.vertex_paths[sectors_.vertices[s]];
@@ -245,26 +244,23 @@ class Division {
         const auto between = [&](const std::vector<double>& values) {
             return (1.0 - t) * values[sector_p] + t * values[sector_q];
         };
-        result_.vertex_times.push_back(between(fire_.sector_times));
         result_.vertex_paths.push_back(between(fire_.sector_paths));
     }
 
     void add_part(Index face, std::span<const Index> corners, bool is_low) {
         add_face(result_.complex, corners, values_of(complex_, face));
         result_.is_low.push_back(is_low ? 1 : 0);
-        result_.face_times.push_back(face_time_);
+        result_.parents.push_back(face);
     }
 
     void divide(Index face) {
         corners_.clear();
         sides_of_zero_.clear();
         double sum = 0.0;
-        face_time_ = 0.0;
         for (Index c = complex_.faces.offsets[face]; c < complex_.faces.offsets[face + 1]; ++c) {
             const Index sector = sectors_.of_corner[c];
             const double depth = depths_[sector];
             sum += depth;
-            face_time_ = std::max(face_time_, fire_.sector_times[sector]);
             corners_.push_back(complex_.faces.items[c]);
             sides_of_zero_.push_back(depth > 0.0 ? 1 : depth < 0.0 ? -1 : 0);
             if (const Index cut = cuts_[complex_.face_edges.items[c]]; cut != kNone) {
@@ -319,7 +315,6 @@ class Division {
     const std::vector<double>& depths_;
     Divided result_;
     std::vector<Index> cuts_;  // the vertex on each edge
-    double face_time_ = 0.0;
     std::vector<Index> corners_;
     std::vector<int> sides_of_zero_;
 };
@@ -374,14 +369,15 @@ class FaceCollapse {
         const MedialComplex& complex = divided_.complex;
         const auto order = [&](const ElementaryCollapse& collapse) {
             return collapse.has_face && divided_.is_low[collapse.element] != 0
-                       ? burn_order(complex, divided_.face_times, divided_.vertex_times, collapse)
+                       ? std::optional(divided_.edge_times[collapse.free])
                        : std::nullopt;
         };
-        Collapses collapses(complex, remainder_, order, [&](const ElementaryCollapse& collapse, const BurnOrder&) {
-            for (const Index v : complex.faces[collapse.element]) {
-                remove_spur(v);
-            }
-        });
+        Collapses collapses(complex, remainder_, order,
+                            [&](const ElementaryCollapse& collapse, const std::optional<double>&) {
+                                for (const Index v : complex.faces[collapse.element]) {
+                                    remove_spur(v);
+                                }
+                            });
         collapses.add_all();
         collapses.run();
     }
@@ -620,6 +616,7 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
     Divided divided = Division(burnt, depths).run();
+    divided.edge_times = edge_times(burnt, divided.complex, divided.radii, divided.parents);
     keep_along_seams(divided);
     report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);

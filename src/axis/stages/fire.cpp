@@ -475,13 +475,4 @@ ErosionThickness erosion_thickness(const MedialComplex& complex, const Execution
     });
 }
 
-BurnOrder burn_order(const MedialComplex& complex, std::span<const double> face_times,
-                     std::span<const double> vertex_times, const ElementaryCollapse& collapse) {
-    if (!collapse.has_face) {
-        return std::nullopt;
-    }
-    const auto& [p, q] = complex.edges[collapse.free];
-    return std::pair(face_times[collapse.element], vertex_times[p] + vertex_times[q]);
-}
-
 }  // namespace scaleaxis::inline v1

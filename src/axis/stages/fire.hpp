@@ -75,10 +75,4 @@ std::pair<Arrival, Index> arrival_beside(const Fire& fire, Index sector, const P
 Fire burn(const MedialComplex& complex, const std::vector<double>& radii, const Sides& sides, const Sectors& sectors,
           double tolerance = kInfinity);
 
-/// The key by which faces collapse in the order in which they burn, from that of their free edges which burns first;
-/// nothing for a collapse without a face.
-using BurnOrder = std::optional<std::pair<double, double>>;
-BurnOrder burn_order(const MedialComplex& complex, std::span<const double> face_times,
-                     std::span<const double> vertex_times, const ElementaryCollapse& collapse);
-
 }  // namespace scaleaxis::inline v1

@@ -161,6 +161,27 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
                : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
 }
 
+std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const std::vector<double>& radii,
+                               std::span<const Index> parents) {
+    const Sides sides = sides_of(parts);
+    std::vector<double> times(parts.edges.size(), kInfinity);
+    for_each_index(static_cast<Index>(times.size()), [&](Index e) {
+        const std::span<const Index> at = sides.of_edge[e];
+        if (at.size() == 1) {
+            times[e] = radius_on_edge(parts, radii, e, 0.5);
+        }
+        const Point& p = parts.vertices[parts.edges[e][0]];
+        const Point& q = parts.vertices[parts.edges[e][1]];
+        for (const Index side : at) {
+            const auto time_at = [&](const Point& x) {
+                return arrival_in_face(burnt, parents[sides.face_of[side]], x).first.time;
+            };
+            times[e] = std::min({times[e], time_at(midpoint(p, q)), 0.5 * (time_at(p) + time_at(q))});
+        }
+    });
+    return times;
+}
+
 BurntComplex burnt_complex(MedialComplex complex, double tolerance) {
     BurntComplex result = before_the_fire(std::move(complex));
     result.fire = burn(result.complex, result.radii, result.sides, result.sectors, tolerance);

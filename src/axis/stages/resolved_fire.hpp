@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "axis/edit/halving.hpp"
@@ -40,6 +41,14 @@ struct RidgeCrossing {
     std::array<double, 2> end_radii;
     double radius;
 };
+
+/// When the edges of faces burn: in the middle, which may be a dip of the union; or at the ends, where fires from there
+/// meet in between. Faces collapse in this order of their free edges, so that what is left has burnt last. Infinite for
+/// edges without faces.
+/// \param parts a complex whose faces are parts of those that burnt \param radii of its vertices
+/// \param parents the face of which each of its faces is a part
+std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const std::vector<double>& radii,
+                               std::span<const Index> parents);
 
 /// How often what is cut is looked at again.
 inline constexpr int kMostCutRounds = 2;  // a third hardly finds more
