@@ -27,7 +27,7 @@ void add_balls_or_axis_options(CommandLine command, BallsOrAxisOptions& options)
 BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_balls_only,
                                const std::optional<double>& scale) {
     if (!takes_balls_only && file_kind(path) == FileKind::kAxis) {
-        const MedialComplex axis = read_stored_solid(path, scale);
+        const MedialComplex axis = read_axis(path, scale);
         return {Envelope(axis), axis.vertices.size()};
     }
     std::vector<Ball> balls = read_union(path);

@@ -24,7 +24,6 @@
 #include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
-#include "stored_axis.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -167,7 +166,7 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     Stopwatch watch;
     FilteredSolid subject =
-        is_axis ? FilteredSolid{read_stored_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
+        is_axis ? FilteredSolid{read_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
     std::vector<StageCost>& costs = subject.costs;
     watch.lap("axis");
     Filtration nested = filtration(std::move(subject.axis), options.filtration,

@@ -27,7 +27,6 @@
 #include "scaleaxis/shells.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
-#include "stored_axis.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -109,7 +108,7 @@ FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundMidsurface outcome;
     Stopwatch watch;
-    MedialComplex complex = read_stored_axis(path);
+    MedialComplex complex = read_axis(path);
     if (std::ranges::any_of(complex.face_angles, [](double angle) { return !(angle > 0.0); })) {
         complex = with_object_angles(std::move(complex));
     }

@@ -108,7 +108,7 @@ FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, 
     check_unused(options.source, "an axis that is there already", {"--as", "--format"});
     FoundSkeleton outcome;
     Stopwatch watch;
-    outcome.complex = read_stored_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
+    outcome.complex = read_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
     for (const Diagnostic& warning : coarse_axis_warning(outcome.complex)) {
         listener.warn(options.input, warning);
     }

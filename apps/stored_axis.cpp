@@ -38,28 +38,7 @@ bool is_coarse(const MedialComplex& complex) {
     return static_cast<double>(count_long_edges(complex)) > kCoarsePart * static_cast<double>(complex.edges.size());
 }
 
-bool has_any(const MedialComplex& complex, VertexKind kind) {
-    return std::ranges::find(complex.vertex_origins, kind, &VertexOrigin::kind) != complex.vertex_origins.end();
-}
-
-bool knows_balls(const MedialComplex& complex) {
-    return has_any(complex, VertexKind::kBall) || has_any(complex, VertexKind::kTouching);
-}
-
 }  // namespace
-
-MedialComplex read_stored_axis(const fs::path& path, const std::optional<double>& scale) {
-    MedialComplex complex = read_axis(path);
-    complex.scale = scale.value_or(complex.scale);
-    // The axis of a union of balls has none of radius 0: those are on sharp edges, up to which radii are linear.
-    const bool is_linear = is_coarse(complex) || has_any(complex, VertexKind::kSharpEdge);
-    return !knows_balls(complex) && is_linear ? with_linear_radii(std::move(complex)) : complex;
-}
-
-MedialComplex read_stored_solid(const fs::path& path, const std::optional<double>& scale) {
-    MedialComplex complex = read_stored_axis(path, scale);
-    return knows_balls(complex) ? complex : with_linear_radii(std::move(complex));
-}
 
 std::vector<Diagnostic> coarse_axis_warning(const MedialComplex& complex) {
     if (!is_coarse(complex)) {
@@ -110,7 +89,7 @@ Status run_stored_axis(const std::string& name, StoredAxisOptions options, const
                                 "it holds the axes of many scales, of which the first is taken: cut it with scaleaxis "
                                 "filter --scale S first to have another one"});
         }
-        return read_stored_axis(path, options.scale);
+        return read_axis(path, options.scale);
     });
     if (!complex.vertex_labels.empty()) {
         warnings.push_back({"axis.labels", "the labels of its vertices are left out"});

@@ -18,15 +18,6 @@
 
 namespace scaleaxis::app {
 
-/// The axis in a file. Our PLY files say which vertices are centres of balls. Where a file names none and balls are far
-/// apart, it is a medial mesh of another program, and radii are linear; so they are beside balls of radius 0.
-/// \param scale by which its balls had been grown; unset: as the file says, or else 1
-MedialComplex read_stored_axis(const std::filesystem::path& path, const std::optional<double>& scale = {});
-
-/// The same for the solid that it describes: radii are linear wherever the file names no centres of balls. Between the
-/// balls of a union that adds less than its error, and without it an axis of few balls would be these balls alone.
-MedialComplex read_stored_solid(const std::filesystem::path& path, const std::optional<double>& scale);
-
 struct StoredAxisOptions {
     std::filesystem::path input;
     std::string format;  ///< of the input; empty: its name or content tells

@@ -31,7 +31,6 @@
 #include "scaleaxis/view.hpp"
 #include "source.hpp"
 #include "stopwatch.hpp"
-#include "stored_axis.hpp"
 #include "terminal.hpp"
 
 namespace scaleaxis::app {
@@ -80,7 +79,7 @@ struct MeasuredSolid {
 MeasuredSolid read_axis_and_surface(const ThicknessCommandOptions& options, const fs::path& path,
                                     const Execution& execution) {
     MeasuredSolid subject;
-    subject.axis = read_stored_axis(path);
+    subject.axis = read_axis(path);
     if (!options.surface.empty()) {
         subject.surface = read_mesh_with_warnings(options.surface, options.surface);
         return subject;

@@ -1990,6 +1990,28 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
 }
 
+// Of its grown balls, whose radii have been divided, a file that names none must not be taken for the union: they
+// hardly overlap.
+TEST_F(CommandLine, SkeletonsOfMaAreThoseOfPly) {
+    write(folder_ / "rod.off", box_off(0, 0, 0, 1));
+    for (const std::string delta : {"0.01", "0.02"}) {
+        SCOPED_TRACE(delta);
+        for (const std::string extension : {".ma", ".ply"}) {
+            ASSERT_EQ(
+                run({"axis", "rod.off", "-o", "rod" + extension, "--delta", delta, "--no-sharp", "--clean", "0", "-q"})
+                    .status,
+                0);
+            const Outcome outcome = run({"skeleton", "rod" + extension, "-o", extension.substr(1) + ".json", "-q"});
+            ASSERT_EQ(outcome.status, 0) << outcome.err;
+        }
+        const Json of_ma = Json::parse(content(folder_ / "ma.json"));
+        const Json of_ply = Json::parse(content(folder_ / "ply.json"));
+        EXPECT_EQ(of_ma["branches"].size(), of_ply["branches"].size());
+        const auto count = [](const Json& skeleton) { return static_cast<double>(skeleton["nodes"].size()); };
+        EXPECT_NEAR(count(of_ma), count(of_ply), 3.0);
+    }
+}
+
 TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     const std::vector<std::string> ring{
         "--implicit", "sqrt((sqrt(x^2+y^2)-2)^2+z^2)-0.5", "--bounds", "-3,-3,-1,3,3,1", "--delta", "0.02"};

@@ -1239,8 +1239,11 @@ TEST_F(Io, AnAxisComesBackFromMaAsTriangles) {
     }
     EXPECT_EQ(read.sheets, 1) << "the two polygons have a side that no third one has";
     EXPECT_EQ(read.face_angles, std::vector<double>(5, 0.0));
-    EXPECT_EQ(read.vertex_origins, std::vector<VertexOrigin>(10));
+    EXPECT_EQ(read.vertex_origins, std::vector<VertexOrigin>(10, {VertexKind::kTouching}));
     EXPECT_EQ(topology(read), topology(axis));
+    const MedialComplex of_union = read_axis(path("axis.ma"), 1.1);
+    EXPECT_EQ(of_union.vertex_origins, std::vector<VertexOrigin>(10));
+    EXPECT_EQ(of_union.scale, 1.1);
 }
 
 TEST_F(Io, AnEmptyAxisComesBack) {

@@ -125,11 +125,13 @@ constexpr VertexOrigin origin_of(Index number, double radius) {
 /// A medial axis from PLY (vertices with `radius`, polygons, edges) or .ma, of this library or of others.
 ///
 /// `edges` holds the edges of the file and the sides of all faces, `face_edges` refers to them. What a file does not
-/// say is `kVoronoi` in `vertex_origins` (at radius 0 `kSharpEdge`), 0 in `face_angles`, and 1 in `scale`; sheets that
-/// it does not name are found by `label_sheets`. No file names the contacts: `face_contacts` and the boundary vertices
-/// are empty. \throws FileError naming a radius that is absent or negative, or an edge or face without its vertices
-SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file);
-SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file);
+/// say is 0 in `face_angles`, and 1 in `scale`; sheets that it does not name are found by `label_sheets`. No file names
+/// the contacts: `face_contacts` and the boundary vertices are empty. Where the file does not say which vertices are
+/// centres of balls, radii are linear: the balls of a union of other programs need not overlap.
+/// \param scale by which the balls had been grown, in place of what the file says: it says that they are a union's
+/// \throws FileError naming a radius that is absent or negative, or an edge or face without its vertices
+SCALEAXIS_EXPORT MedialComplex read_axis(const std::filesystem::path& file, const std::optional<double>& scale = {});
+SCALEAXIS_EXPORT MedialComplex read_axis(const FileBytes& file, const std::optional<double>& scale = {});
 
 /// The factor by which the balls of an axis had been grown, if the file says it: PLY of `write_axis` does.
 /// \throws FileError if it cannot be read at all

@@ -297,12 +297,12 @@ void check_filtration_format(const path& file, std::string_view format) {
     }
 }
 
-/// Fills what a file need not say.
-void complete(MedialComplex& complex) {
+/// Fills what a file need not say. \param unnamed of vertices of which it does not say what they are
+void complete(MedialComplex& complex, Index unnamed = kNone) {
     const std::vector<std::array<Index, 2>> listed_edges = std::move(complex.edges);
     build_edges(complex, listed_edges);
     for (std::size_t v = complex.vertex_origins.size(); v < complex.vertices.size(); ++v) {
-        complex.vertex_origins.push_back(origin_of(kNone, complex.radii[v]));
+        complex.vertex_origins.push_back(origin_of(unnamed, complex.radii[v]));
     }
     complex.face_angles.resize(complex.faces.size(), 0.0);
     if (complex.face_sheets.empty()) {
@@ -451,10 +451,11 @@ Filtration filtration_of(const Source& source) {
     return checked(std::move(result), [](const Filtration& filtration) { check(filtration); });
 }
 
-MedialComplex axis_of(const Source& source) {
+MedialComplex axis_of(const Source& source, const std::optional<double>& scale) {
     MedialComplex complex = select_reader(source.name, source.content, &Format::read_axis)(source.content);
     check_axis(complex);
-    complete(complex);
+    complete(complex, scale ? kNone : kStoredLinear);
+    complex.scale = scale.value_or(complex.scale);
     return complex;
 }
 
@@ -593,8 +594,13 @@ PointCloud read_points(const FileBytes& file) { return read_from(file, points_of
 std::vector<Ball> read_balls(const path& file) { return read_from(file, balls_of); }
 std::vector<Ball> read_balls(const FileBytes& file) { return read_from(file, balls_of); }
 
-MedialComplex read_axis(const path& file) { return read_from(file, axis_of); }
-MedialComplex read_axis(const FileBytes& file) { return read_from(file, axis_of); }
+MedialComplex read_axis(const path& file, const std::optional<double>& scale) {
+    return read_from(file, [&](const Source& source) { return axis_of(source, scale); });
+}
+
+MedialComplex read_axis(const FileBytes& file, const std::optional<double>& scale) {
+    return read_from(file, [&](const Source& source) { return axis_of(source, scale); });
+}
 
 std::optional<double> stored_scale(const path& file) { return read_from(file, axis_scale_of); }
 std::optional<double> stored_scale(const FileBytes& file) { return read_from(file, axis_scale_of); }

@@ -127,7 +127,7 @@ def _read_as(given: Any, kind: str) -> Any:
     if kind == "image":
         return image_of(_core.read_image(given, "input"))
     if kind == "axis":
-        return complex_of(_core.read_axis(given, "input"))
+        return complex_of(_core.read_axis(given, "input", None))
     return _core.read_balls(given, "input") if _core.file_kind(given) == "balls" else _read_as(given, "axis")
 
 

@@ -153,9 +153,13 @@ class MedialComplex:
         radii: npt.ArrayLike,
         faces: Polygons | list[Any] | npt.ArrayLike = (),
         edges: npt.ArrayLike = (),
-        scale: float = 1.0,
+        scale: float | None = None,
     ) -> MedialComplex:
-        """A complex of one's own: the sides of the faces are added to the edges, and sheets are found."""
+        """A complex of one's own: the sides of the faces are added to the edges, and sheets are found.
+
+        `scale`: by which the balls of a union had been grown, and their radii divided. Without it, radii are linear
+        between vertices.
+        """
         places = _arrays.points(vertices, "vertices")
         given = faces if isinstance(faces, Polygons) else _polygons_of_lists(faces)
         lists = Polygons(given.offsets, _arrays.indices(given.indices, "faces", (), len(places)))
@@ -177,8 +181,8 @@ class MedialComplex:
                 face_angles=np.zeros(count),
                 face_sheets=np.zeros(count, dtype=np.int32),
                 sheets=0,
-                vertex_balls=np.full(len(places), -1, dtype=np.int32),
-                scale=scale,
+                vertex_balls=np.full(len(places), -2 if scale is None else -1, dtype=np.int32),
+                scale=1.0 if scale is None else scale,
             )
         )
 

@@ -61,9 +61,13 @@ def read_balls(file: Path | bytes, name: str = "input") -> Floats:
 
 
 @checked
-def read_axis(file: Path | bytes, name: str = "input") -> MedialComplex:
-    """A medial axis from PLY or .ma. PLY of `write_axis` say its scale; of others it is 1."""
-    return complex_of(_core.read_axis(file, name))
+def read_axis(file: Path | bytes, name: str = "input", scale: float | None = None) -> MedialComplex:
+    """A medial axis from PLY or .ma. PLY of `write_axis` say its scale, and which vertices are centres of balls.
+
+    `scale`: by which the balls of a union had been grown, in place of what the file says. Without it, radii of files
+    that name no centres of balls are linear between vertices, and the scale of those that do not say it is 1.
+    """
+    return complex_of(_core.read_axis(file, name, scale))
 
 
 @checked

@@ -62,8 +62,8 @@ void bind_readers(nb::module_& m) {
     m.def("read_balls", [](const FileIn& file, const std::string& name) {
         return array_of(read_from(file, name, [](const auto& from) { return read_balls(from); }));
     });
-    m.def("read_axis", [](const FileIn& file, const std::string& name) {
-        return fields_of(read_from(file, name, [](const auto& from) { return read_axis(from); }));
+    m.def("read_axis", [](const FileIn& file, const std::string& name, const std::optional<double>& scale) {
+        return fields_of(read_from(file, name, [&](const auto& from) { return read_axis(from, scale); }));
     });
     m.def("read_image", [](const FileIn& file, const std::string& name) {
         return fields_of(read_from(file, name, [](const auto& from) { return read_image(from); }));
