@@ -183,6 +183,78 @@ inline std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>
     return edges;
 }
 
+/// The surface of boxes, each from a low corner to a high one, less that of others: one solid, with no two vertices
+/// alike.
+inline TriangleMesh blocks_mesh(const std::vector<std::array<Point, 2>>& boxes,
+                                const std::vector<std::array<Point, 2>>& holes = {}) {
+    std::array<std::vector<double>, 3> grid;
+    for (const auto* list : {&boxes, &holes}) {
+        for (const std::array<Point, 2>& box : *list) {
+            for (const Point& p : box) {
+                grid[0].push_back(p.x);
+                grid[1].push_back(p.y);
+                grid[2].push_back(p.z);
+            }
+        }
+    }
+    for (std::vector<double>& lines : grid) {
+        std::ranges::sort(lines);
+        lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    }
+    const auto middle = [&](int axis, int i) { return 0.5 * (grid[axis][i] + grid[axis][i + 1]); };
+    const auto is_solid = [&](const std::array<int, 3>& cell) {
+        for (int axis = 0; axis < 3; ++axis) {
+            if (cell[axis] < 0 || cell[axis] + 1 >= static_cast<int>(grid[axis].size())) {
+                return false;
+            }
+        }
+        const Point p{middle(0, cell[0]), middle(1, cell[1]), middle(2, cell[2])};
+        const auto holds = [&](const std::array<Point, 2>& box) {
+            return p.x > box[0].x && p.y > box[0].y && p.z > box[0].z && p.x < box[1].x && p.y < box[1].y &&
+                   p.z < box[1].z;
+        };
+        return std::ranges::any_of(boxes, holds) && std::ranges::none_of(holes, holds);
+    };
+    TriangleMesh mesh;
+    std::map<std::array<int, 3>, Index> numbers;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [entry, is_new] = numbers.try_emplace(at, static_cast<Index>(mesh.vertices.size()));
+        if (is_new) {
+            mesh.vertices.push_back({grid[0][at[0]], grid[1][at[1]], grid[2][at[2]]});
+        }
+        return entry->second;
+    };
+    std::array<int, 3> cell{};
+    for (cell[0] = 0; cell[0] + 1 < static_cast<int>(grid[0].size()); ++cell[0]) {
+        for (cell[1] = 0; cell[1] + 1 < static_cast<int>(grid[1].size()); ++cell[1]) {
+            for (cell[2] = 0; cell[2] + 1 < static_cast<int>(grid[2].size()); ++cell[2]) {
+                for (int side = 0; side < 6 && is_solid(cell); ++side) {
+                    const int axis = side / 2;
+                    std::array<int, 3> beside = cell;
+                    beside[axis] += side % 2 == 0 ? -1 : 1;
+                    if (is_solid(beside)) {
+                        continue;
+                    }
+                    std::array<Index, 4> corners{};
+                    for (int k = 0; k < 4; ++k) {
+                        std::array<int, 3> at = cell;
+                        at[axis] += side % 2;
+                        at[(axis + 1) % 3] += k == 1 || k == 2 ? 1 : 0;
+                        at[(axis + 2) % 3] += k >= 2 ? 1 : 0;
+                        corners[k] = vertex(at);
+                    }
+                    if (side % 2 == 0) {
+                        std::swap(corners[1], corners[3]);
+                    }
+                    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
+                    mesh.triangles.push_back({corners[0], corners[2], corners[3]});
+                }
+            }
+        }
+    }
+    return mesh;
+}
+
 inline TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {
     for (Point& p : mesh.vertices) {
         p = scale * p + by;

@@ -19,9 +19,10 @@ namespace {
 
 using test::prism;
 
-ShellMesh shells_of(const TriangleMesh& mesh, const ShellOptions& options, int threads = 0) {
+ShellMesh shells_of(const TriangleMesh& mesh, const ShellOptions& options, int threads = 0, double delta = 0.01) {
     const auto solid = mesh_solid(mesh);
-    const ScaleAxis axis = scale_axis(*solid, {.delta = Length::relative(0.01), .scales = {1.1}}, {.threads = threads});
+    const ScaleAxis axis =
+        scale_axis(*solid, {.delta = Length::relative(delta), .scales = {1.1}}, {.threads = threads});
     return shell_mesh(axis.axes[0].complex, *solid, options, {.threads = threads});
 }
 
@@ -92,6 +93,69 @@ TEST(Shells, MiddlesLieOnCurvedWalls) {
     }
     for (const Point& p : shells.middles) {
         EXPECT_NEAR(std::hypot(p.x, p.y), 10.0, 0.03);
+    }
+}
+
+double area_of(const ShellMesh& shells) {
+    double area = 0.0;
+    for (const MidsurfaceSheet& sheet : shells.sheets) {
+        area += sheet.area;
+    }
+    return area;
+}
+
+// In a corner of a hole the rims of two sides meet at one place, where normals turn from one to the other.
+TEST(Shells, HolesHaveTheirCorners) {
+    const TriangleMesh plate = test::blocks_mesh({{{{-20, -15, -1}, {20, 15, 1}}}}, {{{{-3, -5, -1}, {7, 4, 1}}}});
+    for (const double size : {1.0, 2.0, 4.0}) {
+        SCOPED_TRACE(size);
+        const ShellMesh shells = shells_of(plate, {.size = size});
+        EXPECT_NEAR(area_of(shells), 40.0 * 30.0 - 10.0 * 9.0, 0.1);
+        EXPECT_NEAR(shells.border_length, 2.0 * (40.0 + 30.0 + 10.0 + 9.0), 0.1);
+    }
+}
+
+// Seams of four walls, which two of them must not have with another edge than the others.
+TEST(Shells, CrossingRibsHaveNoFlatTriangles) {
+    const TriangleMesh ribs = test::blocks_mesh({{{{0, 0, 0}, {32, 32, 1.5}}},
+                                                 {{{9.25, 0, 1.5}, {10.75, 32, 10}}},
+                                                 {{{21.25, 0, 1.5}, {22.75, 32, 10}}},
+                                                 {{{0, 9.25, 1.5}, {32, 10.75, 10}}},
+                                                 {{{0, 21.25, 1.5}, {32, 22.75, 10}}}});
+    for (int k = 0; k < 6; ++k) {
+        const Point axis = unit(Point{1.0, 2.0 - k, 3.0});
+        const double angle = 0.7 + 0.9 * k;
+        SCOPED_TRACE("turned by " + std::to_string(angle) + " about " + std::to_string(2 - k));
+        TriangleMesh turned = ribs;
+        for (Point& p : turned.vertices) {
+            p = std::cos(angle) * p + std::sin(angle) * cross(axis, p) + (1.0 - std::cos(angle)) * dot(axis, p) * axis;
+        }
+        const ShellMesh shells = shells_of(turned, {.size = 2.0});
+        EXPECT_GT(shells.least_angle, 3.0);
+        EXPECT_NEAR(area_of(shells), 32.0 * 32.0 + 4.0 * 32.0 * 9.25, 0.005 * 2208.0);
+    }
+}
+
+// From the edge of the solid to the seam its balls grow from nothing to the thickness of the walls.
+TEST(Shells, AWedgeBetweenWallsTapers) {
+    const double half = 25.0 * 3.14159265358979 / 180.0;
+    const Point u{std::cos(half), std::sin(half), 0.0};
+    const Point n{-std::sin(half), std::cos(half), 0.0};
+    const Point end = 30.0 * u;
+    const Point inner = end - 2.0 * n;
+    const double tip = 2.0 / std::sin(half);
+    const ShellMesh shells = shells_of(
+        prism({{0, 0}, {end.x, -end.y}, {inner.x, -inner.y}, {tip, 0}, {inner.x, inner.y}, {end.x, end.y}}, 20.0),
+        {.size = 1.0}, 0, 0.005);
+    ASSERT_EQ(shells.sheets.size(), 3U);
+    for (std::size_t t = 0; t < shells.mesh.triangles.size(); ++t) {
+        for (int k = 0; k < 3 && shells.triangle_sheets[t] == 2; ++k) {
+            const Point& p = shells.mesh.vertices[shells.mesh.triangles[t][k]];
+            if (p.z < 2.0 || p.z > 18.0) {
+                continue;  // balls that touch an end, too
+            }
+            EXPECT_NEAR(shells.thickness[t][k], 2.0 * std::hypot(p.x, p.y) * std::sin(half), 0.2);
+        }
     }
 }
 

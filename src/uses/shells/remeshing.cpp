@@ -105,7 +105,8 @@ class WallRemesher {
         }
     }
 
-    // Straightens bends and other curves: a triangle between two edges of one curve has no room once this is straight.
+    // Straightens bends and other curves: a triangle between two edges of one curve has no room once this is straight,
+    // nor has one between the border and a vertex on it, as the end of a seam.
     void clip_ears() {
         for (Index t = 0; t < static_cast<Index>(triangles_.size()); ++t) {
             for (int k = 0; k < 3 && walls_[t] != kNone; ++k) {
@@ -345,17 +346,28 @@ class WallRemesher {
         const Point one = vertices_[others[0]] - vertices_[v];
         const Point two = vertices_[others[1]] - vertices_[v];
         const double cosine = dot(unit(one), unit(two));
+        const auto is_border = [&](const Spoke& spoke) { return spoke.count == 1 && spoke.walls[0] == walls_[t]; };
+        if (cosine < -kSameDirection && triangles_at(others[0], others[1]).size() == 1 &&
+            std::ranges::none_of(spokes, is_border)) {
+            remove(t);
+            return;
+        }
         if (!sides[0]->is_curve() || !sides[1]->is_curve()) {
             return;
         }
         if (place_of(spokes) == VertexPlace::kOnCurve && sides[0]->count == 2) {
             walls_[t] = sides[0]->walls[sides[0]->walls[0] == walls_[t] ? 1 : 0];
         } else if (place_of(spokes) == VertexPlace::kOnCurve && cosine < -kSameDirection) {
-            contract(v, squared_norm(one) < squared_norm(two) ? others[0] : others[1]);
+            const int nearer = squared_norm(one) < squared_norm(two) ? 0 : 1;
+            contract(v, others[nearer], others[1 - nearer]);
+            if (walls_[t] != kNone) {
+                contract(v, others[1 - nearer], others[nearer]);
+            }
         }
     }
 
-    void contract(Index a, Index b) {
+    // \param beyond a vertex towards which curves from both ends may go on as one: between them there is no room
+    void contract(Index a, Index b, Index beyond = kNone) {
         std::vector<Spoke> spokes = spokes_of(a);
         VertexPlace place = place_of(spokes);
         VertexPlace other_place = place_of(spokes_of(b));
@@ -371,20 +383,20 @@ class WallRemesher {
         }
         const Point to =
             place == other_place && place != VertexPlace::kCorner ? midpoint(vertices_[a], vertices_[b]) : vertices_[b];
-        if (is_short || (keeps_shape(a, b, spokes) && may_contract(a, b, to))) {
+        if (is_short || (keeps_shape(a, b, spokes, beyond) && may_contract(a, b, to))) {
             replace(a, b, to);
         }
     }
 
     // Does the surface stay what it is, with all its curves, if `a` becomes `b`?
-    bool keeps_shape(Index a, Index b, const std::vector<Spoke>& spokes) const {
+    bool keeps_shape(Index a, Index b, const std::vector<Spoke>& spokes, Index beyond) const {
         const std::vector<Spoke> others = spokes_of(b);
         std::size_t common = 0;
         for (const Spoke& spoke : spokes) {
             const auto other = std::ranges::find(others, spoke.end, &Spoke::end);
             if (other != others.end()) {
                 ++common;
-                if (spoke.is_curve() && other->is_curve()) {
+                if (spoke.end != beyond && spoke.is_curve() && other->is_curve()) {
                     return false;
                 }
             }
@@ -397,8 +409,9 @@ class WallRemesher {
         }
         // No triangle may become the same as another one, nor may the last ones of a wall go.
         return std::ranges::none_of(at_[a], [&](Index t) {
-            return std::ranges::all_of(triangles_[t],
-                                       [&](Index v) { return v == a || std::ranges::binary_search(apexes, v); });
+            return std::ranges::all_of(triangles_[t], [&](Index v) {
+                return v == a || (v != beyond && std::ranges::binary_search(apexes, v));
+            });
         });
     }
 

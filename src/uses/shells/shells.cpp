@@ -133,20 +133,24 @@ std::vector<Index> parts_in(const Midsurface& surface, const Neighbourhood& neig
 }
 
 // The parts of walls where balls are as large as the wall is thick. A sheet that has none, as a short one between two
-// seams, is taken with the ends of its walls, or whole.
+// seams, is taken with the ends of its walls, or whole; one that tapers to an edge of the solid is taken whole, too: up
+// to its seam it has no thickness but that of its balls.
 std::vector<Index> known_parts(const Midsurface& surface, const Neighbourhood& neighbours) {
     const MedialComplex complex = complex_of(surface);
     const TriangleFlags is_steep = steep_vertices(complex, complex.edges, kDraft);
     const TriangleFlags is_near = near_seams(surface, neighbours);
     std::vector<Index> parts(surface.mesh.triangles.size(), kNone);
     TriangleFlags is_done(surface.sheets.size());
+    const TriangleFlags is_wedge = each_of<std::uint8_t>(
+        surface.sheets, [](const MidsurfaceSheet& sheet) { return sheet.min < kNearby * sheet.max ? 1 : 0; });
     for (int level = 0; level < 3; ++level) {
         const auto is_known = [&](Index v) {
             return (level > 0 || is_steep[v] == 0) && (level > 1 || is_near[v] == 0);
         };
         TriangleFlags counts(parts.size());
         for (std::size_t t = 0; t < parts.size(); ++t) {
-            const bool is_asked = is_done[surface.triangle_sheets[t]] == 0;
+            const Index sheet = surface.triangle_sheets[t];
+            const bool is_asked = is_done[sheet] == 0 && (level != 1 || is_wedge[sheet] == 0);
             counts[t] = is_asked && std::ranges::all_of(surface.mesh.triangles[t], is_known) ? 1 : 0;
         }
         const std::vector<Index> found = parts_in(surface, neighbours, counts, level < 2);
@@ -443,7 +447,8 @@ class Rims {
     };
 
     // Rims go on up to a thickness away where normals differ little; what is shorter than a radius is an error of
-    // single normals.
+    // single normals. Around a re-entrant edge of the solid, as in the corner of a hole, normals turn from one side to
+    // the other at one place: they are of no rim, which has some length.
     void label() {
         labels_.assign(samples_.size(), kNone);
         if (samples_.empty()) {
@@ -451,14 +456,28 @@ class Rims {
         }
         const auto places = each_of<Point>(samples_, &RimSample::place);
         const PointTree tree = build_point_tree(places);
-        DisjointSets rims(samples_.size());
-        for (std::size_t i = 0; i < samples_.size(); ++i) {
+        const auto for_each_beside = [&](Index i, const auto& use) {
             const RimSample& sample = samples_[i];
             for_each_point_near(tree, sample.place, 2.0 * sample.radius, [&](Index position, double) {
                 const Index other = tree.order[position];
                 if (samples_[other].wall == sample.wall &&
                     dot(samples_[other].normal, sample.normal) > kSameDirection) {
-                    rims.join(static_cast<Index>(i), other);
+                    use(other);
+                }
+            });
+        };
+        const auto count = static_cast<Index>(samples_.size());
+        const std::vector<std::uint8_t> has_length = mapped<std::uint8_t>(count, [&](Index i) {
+            double most = 0.0;
+            for_each_beside(
+                i, [&](Index other) { most = std::max(most, distance(samples_[i].place, samples_[other].place)); });
+            return most > kRadiusError * samples_[i].radius ? 1 : 0;
+        });
+        DisjointSets rims(samples_.size());
+        for (Index i = 0; i < count; ++i) {
+            for_each_beside(i, [&](Index other) {
+                if (has_length[i] != 0 && has_length[other] != 0) {
+                    rims.join(i, other);
                 }
             });
         }
