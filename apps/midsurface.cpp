@@ -271,6 +271,9 @@ Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& c
     if (options.output.empty() && options.shells.empty()) {
         throw InvalidOption("nothing to write: give -o or --shells");
     }
+    if (options.shells.empty() && options.shell_files.order > 0) {
+        throw InvalidOption("--order is for --shells");
+    }
     if (options.shells.empty() == options.size.has_value()) {
         throw InvalidOption(options.size ? "--size is for --shells" : "--shells needs --size, the length of edges");
     }

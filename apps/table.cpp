@@ -104,6 +104,17 @@ std::vector<double> thickness_of(const MedialComplex& axis, const TriangleMesh& 
     return thickness;
 }
 
+Json row_of(const Source& source, MeasuredPieces pieces, std::size_t i, const std::string& unit,
+            const Measures& measures) {
+    Json row{{"input", source.name.string()}};
+    row["label"] = source.label ? Json(static_cast<std::int64_t>(source.label->label)) : Json(nullptr);
+    row["component"] = pieces == MeasuredPieces::kComponents ? Json(i) : Json(nullptr);
+    row["part"] = pieces == MeasuredPieces::kParts ? Json(i) : Json(nullptr);
+    row["unit"] = unit.empty() ? Json(nullptr) : Json(unit);
+    row.update(json_of(measures));
+    return row;
+}
+
 /// The rows of one solid.
 std::vector<Json> rows_of(const TableOptions& options, Source source, const Listener& listener) {
     const auto execution = [&](double begin, double end) { return listener.execution({begin, end}); };
@@ -148,14 +159,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
     const std::string unit = unit_of(input.input);
     std::vector<Json> rows;
     for (std::size_t i = 0; i < all.size(); ++i) {
-        Json row{{"input", source.name.string()}};
-        row["label"] = source.label ? Json(static_cast<std::int64_t>(source.label->label)) : Json(nullptr);
-        const MeasuredPieces pieces = options.measures.pieces;
-        row["component"] = pieces == MeasuredPieces::kComponents ? Json(i) : Json(nullptr);
-        row["part"] = pieces == MeasuredPieces::kParts ? Json(i) : Json(nullptr);
-        row["unit"] = unit.empty() ? Json(nullptr) : Json(unit);
-        row.update(json_of(all[i]));
-        rows.push_back(std::move(row));
+        rows.push_back(row_of(source, options.measures.pieces, i, unit, all[i]));
     }
     return rows;
 }
@@ -189,9 +193,8 @@ std::string to_csv(const std::vector<Json>& rows) {
         }
         text += '\n';
     };
-    if (!rows.empty()) {
-        add_line([](const std::string& name, const Json&) { return name; }, rows.front());
-    }
+    add_line([](const std::string& name, const Json&) { return name; },
+             rows.empty() ? row_of({}, MeasuredPieces::kWhole, 0, {}, {}) : rows.front());
     for (const Json& row : rows) {
         add_line([](const std::string&, const Json& value) { return csv_cell(value); }, row);
     }
@@ -250,7 +253,7 @@ Status run_table(TableOptions options, const std::stop_token& cancel) {
     std::vector<Json> rows;
     const Status worst = collect_rows(options, sources, cancel, rows);
     stop_if_requested(cancel);
-    if (rows.empty()) {
+    if (rows.empty() && worst != Status::kDone) {
         return worst;
     }
     Json document = new_document("scaleaxis.table/1");

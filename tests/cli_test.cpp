@@ -1990,6 +1990,21 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
     EXPECT_EQ(run({"skeleton", "box.off", "-o", "box.stl"}).status, 2);
 }
 
+// A ball has a skeleton of one node, and so no parts.
+TEST_F(CommandLine, ATableWithoutRowsHasItsHead) {
+    const Arguments ball{"--implicit", "x^2+y^2+z^2-1", "--bounds", "-2,-2,-2,2,2,2", "--rows", "part", "-q"};
+    const auto table = [&](const std::string& file) {
+        Arguments arguments{"table", "-o", file};
+        arguments.insert(arguments.end(), ball.begin(), ball.end());
+        EXPECT_EQ(run(arguments).status, 0);
+        return content(folder_ / file);
+    };
+    const std::string text = table("none.csv");
+    EXPECT_TRUE(text.starts_with("input,label,component,part,unit,")) << text;
+    EXPECT_EQ(std::ranges::count(text, '\n'), 1);
+    EXPECT_TRUE(Json::parse(table("none.json"))["rows"].empty());
+}
+
 // Of its grown balls, whose radii have been divided, a file that names none must not be taken for the union: they
 // hardly overlap.
 TEST_F(CommandLine, SkeletonsOfMaAreThoseOfPly) {
@@ -2123,6 +2138,7 @@ TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
     EXPECT_NE(content(folder_ / "a.inp").find("*ELEMENT, TYPE=S6, ELSET=SHEET1"), std::string::npos);
     ASSERT_EQ(run({"midsurface", "axis.ply", "--shells", "a.bdf", "--size", "0.5", "--order", "1", "-q"}).status, 0);
     EXPECT_NE(content(folder_ / "a.bdf").find("CTRIA3  "), std::string::npos);
+    EXPECT_EQ(run({"midsurface", "axis.ply", "-o", "a.ply", "--order", "2"}).status, 2);
     EXPECT_EQ(run({"midsurface", "axis.ply", "--shells", "a.inp"}).status, 2);
     EXPECT_EQ(run({"midsurface", "axis.ply", "--shells", "a.stl", "--size", "1"}).status, 2);
     EXPECT_EQ(run({"midsurface", "axis.ply", "-o", "mid.ply", "--size", "1"}).status, 2);
