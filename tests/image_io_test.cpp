@@ -924,6 +924,56 @@ TEST_F(ImageIo, NumbersInText) {
     expect_bytes(read_image(write("text.mha", changed(meta_text, "BinaryData = True", "BinaryData = False"))));
 }
 
+// In single precision 2^24 + 1 is 2^24: of two labels one must not be made.
+TEST_F(ImageIo, LabelsBeyond24BitsAreNotTakenForOthers) {
+    constexpr std::int64_t kMost = 1 << 24;
+    std::vector<std::int64_t> labels(24, kMost - 1);
+    std::copy_n(std::array{kMost, kMost + 1, kMost + 2, kMost + 3}.begin(), 4, labels.begin());
+    const auto expect = [&](const fs::path& file) {
+        SCOPED_TRACE(file.extension());
+        const Image image = read_image(file);
+        for (std::size_t i = 0; i < labels.size(); ++i) {
+            EXPECT_EQ(image.values[i] == float{kMost}, labels[i] == kMost) << labels[i];
+            EXPECT_EQ(image.values[i] > float{kMost}, labels[i] > kMost) << labels[i];
+        }
+        EXPECT_TRUE(scaleaxis::labels(image).empty());
+        LoadOptions options;
+        options.labels = {float{kMost + 2}};
+        try {
+            load_solid(image, options);
+            ADD_FAILURE() << "labels beyond 2^24 are taken";
+        } catch (const UnusableInput& error) {
+            expect_in("labels beyond 2^24 cannot be told apart", error.what());
+        }
+    };
+    const auto expect_of = [&](const std::string& type, auto zero) {
+        SCOPED_TRACE(type);
+        const std::vector<decltype(zero)> values(labels.begin(), labels.end());
+        expect(write("a.npy", npy('<' + type, true, "2, 3, 4", bytes_of(values, std::endian::little))));
+    };
+    expect_of("i4", std::int32_t{});
+    expect_of("u4", std::uint32_t{});
+    expect_of("i8", std::int64_t{});
+    expect_of("u8", std::uint64_t{});
+    expect_of("f8", double{});
+    std::string text;
+    for (const std::int64_t label : labels) {
+        text += std::to_string(label) + ' ';
+    }
+    expect(write("a.nrrd", changed(changed(kNrrd, "raw", "ascii"), "uchar", "uint") + text));
+    expect(write("a.pgm3d", "P2-3D\n2 3 4\n16777219\n" + text));
+    const std::vector<std::uint32_t> unsigned_labels(labels.begin(), labels.end());
+    std::string nii = nifti(bytes_of(unsigned_labels, std::endian::little));
+    nii.replace(70, 2, little(std::int16_t{768}));
+    expect(write("a.nii", nii));
+    std::ranges::replace_if(
+        labels, [](std::int64_t label) { return label > kMost; }, kMost);
+    EXPECT_EQ(scaleaxis::labels(
+                  read_image(write("most.npy", npy("<i8", true, "2, 3, 4", bytes_of(labels, std::endian::little)))))
+                  .size(),
+              2u);
+}
+
 // Without directions, by spacings or by the ends of the axes, as cells or as points between which they lie.
 TEST_F(ImageIo, PlacesOfNrrd) {
     const auto place = [&](const std::string& fields) {

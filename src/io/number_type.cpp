@@ -81,11 +81,23 @@ double number_at(const char* from, NumberType type, std::endian order) {
     return with_type(type, [&](auto zero) { return static_cast<double>(from_bytes<decltype(zero)>(from, order)); });
 }
 
+float as_float(double value) {
+    constexpr float kMostExact = 1 << 24;
+    const auto rounded = static_cast<float>(value);
+    const bool is_merged = std::abs(rounded) == kMostExact && std::abs(value) > double{kMostExact};
+    return is_merged ? std::nextafter(rounded, 2.0F * rounded) : rounded;
+}
+
 void read_numbers(const char* from, std::size_t count, NumberType type, std::endian order, float* to) {
     with_type(type, [&](auto zero) {
         using T = decltype(zero);
         for (std::size_t i = 0; i < count; ++i) {
-            to[i] = static_cast<float>(from_bytes<T>(from + i * sizeof(T), order));
+            const auto number = from_bytes<T>(from + i * sizeof(T), order);
+            if constexpr (std::is_convertible_v<T, float> && (sizeof(T) < sizeof(float) || std::is_same_v<T, float>)) {
+                to[i] = static_cast<float>(number);
+            } else {
+                to[i] = as_float(static_cast<double>(number));
+            }
         }
     });
 }

@@ -29,7 +29,11 @@ bool is_of_type(double value, NumberType type);
 /// The number that begins at `from`.
 double number_at(const char* from, NumberType type, std::endian order);
 
-/// `count` numbers, which begin at `from`, as floats.
+/// The nearest float. What is beyond 2^24, from where on not all whole numbers are floats, stays beyond it: so of the
+/// labels of an image those up to 2^24 are told from all others.
+float as_float(double value);
+
+/// `count` numbers, which begin at `from`, as floats; see `as_float`.
 void read_numbers(const char* from, std::size_t count, NumberType type, std::endian order, float* to);
 
 }  // namespace scaleaxis::io

@@ -151,13 +151,14 @@ std::string in_words(const std::vector<LabelCount>& labels) {
                             });
 }
 
+constexpr float kMostChosenLabel = 0x1p24F;  // beyond it not all whole numbers are floats
+
 /// What can be chosen of an image: its labels, or values that are none.
 std::string labels_in_words(const Image& image) {
     if (const std::vector<LabelCount> counts = report_of(image).labels; !counts.empty()) {
         return in_words(counts);
     }
-    constexpr float kMostLabel = 0x1p24F;
-    if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostLabel; })) {
+    if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostChosenLabel; })) {
         return "labels beyond 2^24 cannot be told apart in single precision; number them anew, as by numpy.unique "
                "with return_inverse, and save the image again";
     }
@@ -187,7 +188,7 @@ std::vector<float> chosen_labels(const Image& image, const LoadOptions& options)
         labels.push_back(found->label);
     }
     for (const float label : labels) {
-        if (std::ranges::find(image.values, label) == image.values.end()) {
+        if (std::abs(label) > kMostChosenLabel || std::ranges::find(image.values, label) == image.values.end()) {
             Words text;
             text << "no voxel has the label " << label << ": " << labels_in_words(image);
             throw UnusableInput(text.str());

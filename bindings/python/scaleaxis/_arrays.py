@@ -146,8 +146,8 @@ def voxels(given: npt.ArrayLike) -> npt.NDArray[np.float32]:
     return values
 
 
-# From here on not all whole numbers have a float32 of their own.
-MOST_LABELS = 2**24
+# Beyond it not all whole numbers have a float32 of their own.
+MOST_LABEL = 2**24
 
 
 def numbered(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[Any] | None]:
@@ -157,13 +157,24 @@ def numbered(values: npt.NDArray[Any]) -> tuple[npt.NDArray[Any], npt.NDArray[An
     if values.size == 0 or values.dtype.kind not in "iuf" or np.can_cast(values.dtype, np.float32):
         return values, None
     largest = max(values.max().item(), -values.min().item())
-    if not MOST_LABELS < largest < np.inf or (values.dtype.kind == "f" and (values != np.floor(values)).any()):
+    if not MOST_LABEL < largest < np.inf or (values.dtype.kind == "f" and (values != np.floor(values)).any()):
         return values, None
     labels = np.unique(values[values != 0])
-    if len(labels) >= MOST_LABELS:
-        raise ValueError(f"{len(labels)} labels are more than the {MOST_LABELS} that are told apart")
+    if len(labels) >= MOST_LABEL:
+        raise ValueError(f"{len(labels)} labels are more than the {MOST_LABEL} that are told apart")
     numbers = np.where(values == 0, 0, np.searchsorted(labels, values) + 1).astype(np.float32)
     return numbers, np.concatenate([np.zeros(1, labels.dtype), labels])
+
+
+def check_kept(values: npt.NDArray[Any]) -> None:
+    """Raises ValueError for whole numbers that a file of 32-bit floats merges."""
+    if values.dtype.kind not in "iu" or np.can_cast(values.dtype, np.float32) or values.size == 0:
+        return
+    if max(values.max().item(), -values.min().item()) > MOST_LABEL:
+        raise ValueError(
+            "files get 32-bit floats, which hold whole numbers up to 2^24, and voxels have larger ones: number labels "
+            "anew, as by numpy.unique with return_inverse, or give levels of grey as float32"
+        )
 
 
 def scales(given: float | Sequence[float] | npt.ArrayLike) -> list[float]:

@@ -110,8 +110,9 @@ def write_axis(
 
 @checked
 def write_image(file: Path, image: Any) -> None:
-    """An image, as `axis` takes it, to NRRD or NIfTI (.nii, .nii.gz)."""
+    """An image, as `axis` takes it, to NRRD or NIfTI (.nii, .nii.gz). Raises ValueError for integers beyond 2^24."""
     known = as_image(image)
+    _arrays.check_kept(known.values)
     content = (*core_of_image(known), (known.unit, known.space))
     if not _is_packed(file):
         _core.write_image(file, *content)

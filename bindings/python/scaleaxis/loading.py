@@ -137,8 +137,8 @@ def labelled_image(given: Any, options: InputOptions) -> Image:
     places = _OF_PLACES if is_array else set()
     _refuse(options, places | {"mask_smoothing", "fill_voids"}, "the labels of an image, of which each is solid by itself")
     image = _image_of_array(known, options) if is_array else as_image(known)
-    if is_path(known):
-        _check_labels([float(image.values.max())])
+    if image.values.size and np.can_cast(image.values.dtype, np.float32):
+        _check_labels([float(image.values.min()), float(image.values.max())])
     return image
 
 
@@ -148,12 +148,12 @@ def _image_of_array(array: npt.NDArray[Any], options: InputOptions) -> Image:
 
 
 def _check_labels(labels: Iterable[float]) -> None:
-    """Raises UnusableInput for labels that may be others of a file, which is read in single precision."""
+    """Raises UnusableInput for labels that single precision, in which files are read, merges with others."""
     for label in labels:
-        if abs(label) >= _arrays.MOST_LABELS:
+        if abs(label) > _arrays.MOST_LABEL:
             raise UnusableInput(
-                f"labels of a file are told apart up to 2^24, and there is {label:.0f}: read the file into an array of "
-                "integers, and give that"
+                "labels of files and of 32-bit floats are told apart up to 2^24: for larger ones give an array of "
+                "integers that has them, as nibabel and SimpleITK read them"
             )
 
 
@@ -199,6 +199,7 @@ def _load_image(image: Image, options: InputOptions, threads: int, tell: Tell | 
     frame = image.unit, image.space
     if names is not None:
         labels = [_number_of(label, names) for label in labels]
+    _check_labels(labels)
     core = _core.load_image(values, place, frame, iso, below, labels, nonzero, smoothing, fills, threads, tell)
     return named(loaded_of(core, is_mask=iso is None), names)
 

@@ -81,7 +81,7 @@ void run_labels(const ImageView& image, const std::pair<std::string, std::string
     report.unit = frame.first;
     report.space = frame.second;
     if (report.labels.empty()) {
-        throw UnusableInput("the image has no labels, which are whole numbers other than 0");
+        throw UnusableInput("the image has no labels, which are whole numbers other than 0 and up to 2^24");
     }
     std::vector<std::size_t> order(report.labels.size());
     std::iota(order.begin(), order.end(), 0);

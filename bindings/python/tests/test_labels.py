@@ -210,6 +210,40 @@ def test_labels_of_files_beyond_single_precision_are_refused(tmp_path):
             call(tmp_path / "a.nrrd")
 
 
+def two_beyond(first):
+    values = np.zeros((16, 16, 16), dtype=np.uint32)
+    values[2:7, 2:7, 2:7] = first
+    values[9:14, 9:14, 9:14] = 2**24 + 1
+    return values
+
+
+def test_labels_of_arrays_of_numpy_are_not_merged_in_files(tmp_path):
+    np.save(tmp_path / "a.npy", two_beyond(2**24))
+    read = scaleaxis.read_image(tmp_path / "a.npy")
+    for given in (tmp_path / "a.npy", read):
+        for function in (scaleaxis.label_axes, lambda image: scaleaxis.each_label(scaleaxis.spheres, image)):
+            with pytest.raises(scaleaxis.UnusableInput, match="told apart up to 2\\^24"):
+                list(function(given))
+        with pytest.raises(scaleaxis.UnusableInput, match="told apart up to 2\\^24"):
+            scaleaxis.axis(given, labels=2**24 + 1)
+        assert scaleaxis.axis(given, 0.1, labels=2**24).topology.components == 1
+    with pytest.raises(ValueError, match="whole numbers up to 2\\^24"):
+        scaleaxis.write_image(tmp_path / "b.nrrd", two_beyond(2**24))
+    assert list(dict(scaleaxis.label_axes(two_beyond(2**24), 0.1))) == [2**24, 2**24 + 1]
+
+
+@pytest.mark.parametrize("kind", [np.int32, np.uint32, np.int64, np.float32, np.float64])
+def test_the_largest_label_of_single_precision_is_one(tmp_path, kind):
+    values = np.where(two_beyond(2**24) == 2**24, 2**24, 0).astype(kind)
+    np.save(tmp_path / "a.npy", values)
+    scaleaxis.write_image(tmp_path / "b.nrrd", values)
+    for given in (values, tmp_path / "a.npy", tmp_path / "b.nrrd"):
+        assert list(dict(scaleaxis.label_axes(given, 0.1))) == [2**24]
+        assert scaleaxis.axis(given, 0.1, labels=2**24).topology.components == 1
+    with pytest.raises(scaleaxis.UnusableInput):
+        scaleaxis.axis(values, labels=2**24 + 1)
+
+
 def test_each_label_calls_any_function():
     values = labelled()
     curves = dict(scaleaxis.each_label(scaleaxis.skeleton, values, delta=0.05, **PLACE))

@@ -117,7 +117,7 @@ Image read_pgm3d_image(std::string_view content, const std::filesystem::path&) {
     }
     image.values.resize(voxels);
     for (float& value : image.values) {
-        value = static_cast<float>(text.any_number());
+        value = as_float(text.any_number());
     }
     if (const std::string_view word = text.any_word(); !word.empty()) {
         text.fail("there are more values than " + std::to_string(image.values.size()));

@@ -157,7 +157,7 @@ void scale_values(const NiftiHead& head, std::vector<float>& values) {
         std::isfinite(head.number(head.fields().slope, 1)) ? head.number(head.fields().slope, 1) : 0.0;
     const bool is_scaled = std::isfinite(slope) && slope != 0.0 && (slope != 1.0 || offset != 0.0);
     for (float& value : values) {
-        value = !std::isfinite(value) ? 0.0F : is_scaled ? static_cast<float>(double{value} * slope + offset) : value;
+        value = !std::isfinite(value) ? 0.0F : is_scaled ? as_float(double{value} * slope + offset) : value;
     }
 }
 

@@ -173,7 +173,7 @@ std::vector<float> read_text(const StoredImage& stored, std::size_t voxels, std:
                     throw damaged("its value " + std::to_string(values.size() + 1) + " of " + std::to_string(voxels) +
                                   " is " + io::quoted(word) + ", which is no number of its type");
                 }
-                values.push_back(static_cast<float>(*number));
+                values.push_back(as_float(*number));
                 word.clear();
             }
         }
