@@ -595,6 +595,14 @@ TEST_F(ImageIo, MetaImage) {
         const std::string field = "ElementType = MET_UCHAR\nDistanceUnits = " + said + '\n';
         EXPECT_EQ(read_image(write("image.mha", meta(field, bytes()))).unit, unit) << said;
     }
+    // Left, posterior, superior, which NIfTI has not.
+    EXPECT_EQ(image.space, "left-posterior-superior");
+    write_image(path("written.nii"), image);
+    const Image turned_around = read_image(path("written.nii"));
+    EXPECT_EQ(turned_around.origin, (Point{-1, -2, 3}));
+    EXPECT_EQ(turned_around.steps, (std::array{Point{-0.5, 0, 0}, Point{0, -1, 0}, Point{0, 0, 2}}));
+    write_image(path("written.nrrd"), image);
+    EXPECT_EQ(read_image(path("written.nrrd")).space, image.space);
     Image micrometres = image;
     micrometres.unit = "um";
     write_image(path("written.nrrd"), micrometres);

@@ -80,7 +80,8 @@ def _of_simpleitk(image: Any) -> Image:
     # A copy: a view does not keep the image alive, which may be gone before it is looked at.
     values = SimpleITK.GetArrayFromImage(image).T
     place = {"spacing": image.GetSpacing(), "direction": direction.reshape(3, 3)}
-    return Image(values, image.GetOrigin(), unit=_unit_of_simpleitk(image), **place)
+    unit = _unit_of_simpleitk(image)
+    return Image(values, image.GetOrigin(), unit=unit, space="left-posterior-superior", **place)
 
 
 def adapted(given: Any) -> Any:

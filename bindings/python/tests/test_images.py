@@ -80,6 +80,23 @@ def test_nrrd_and_metaimage(tmp_path, kind, name, packed):
     assert expect_as_simpleitk(tmp_path / name).unit == ""
 
 
+def test_images_of_itk_lie_where_itk_writes_them(tmp_path):
+    """Left, posterior, superior, also as files of other directions."""
+    import SimpleITK as itk
+    image = itk.GetImageFromArray(numbers("f4").T)
+    image.SetSpacing((2.0, 1.5, 1.25))
+    image.SetOrigin((10.0, 20.0, -30.5))
+    for name in ("a.mha", "a.nii", "a.nrrd"):
+        itk.WriteImage(image, str(tmp_path / name))
+    written = [itk.ReadImage(str(tmp_path / "a.mha")), tmp_path / "a.mha", tmp_path / "a.nrrd"]
+    for one in written:
+        for name in ("b.nii", "b.nrrd"):
+            scaleaxis.write_image(tmp_path / name, one)
+            same, expected = scaleaxis.read_image(tmp_path / name), scaleaxis.read_image(tmp_path / f"a{name[1:]}")
+            expect(same, expected.values, expected.origin, expected.steps)
+            assert same.space == expected.space != ""
+
+
 @pytest.mark.parametrize("kind", ["u1", "i2", "i4", "f4", "f8"])
 def test_vtk(tmp_path, kind):
     import SimpleITK as itk

@@ -74,6 +74,7 @@ void read_meta_place(const ImageHead& head, std::size_t dimension, Image& frame)
     if (!origin.empty()) {
         frame.origin = {origin[0], origin[1], origin[2]};
     }
+    frame.space = "left-posterior-superior";  // as of DICOM, which the format follows without saying so
     const std::string unit = head.text("DistanceUnits");
     frame.unit = unit == "um" || unit == "mm" || unit == "cm" ? unit : "";
 }
