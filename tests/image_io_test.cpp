@@ -1020,6 +1020,32 @@ TEST_F(ImageIo, PlacesOfNrrd) {
                                                bytes()));
 }
 
+// Spaces with a time, of which an image is one volume.
+TEST_F(ImageIo, NrrdKeepsTheSpaceOfSpacesWithATime) {
+    const std::vector<std::pair<std::string, std::string>> spaces{
+        {"RAS", "right-anterior-superior"}, {"LAS", "left-anterior-superior"}, {"lps", "left-posterior-superior"}};
+    for (const auto& [short_name, name] : spaces) {
+        SCOPED_TRACE(name);
+        const auto read = [&](const std::string& space) {
+            return read_image(
+                write("a.nrrd", "NRRD0004\ntype: uchar\ndimension: 4\nsizes: 2 3 4 1\nencoding: raw\nspace: " + space +
+                                    "\nkinds: space space space time\n"
+                                    "space directions: (2,0,0,0) (0,3,0,0) (0,0,4,0) (0,0,0,1)\n\n" +
+                                    bytes()));
+        };
+        const Image image = read(name + "-time");
+        expect_bytes(image);
+        EXPECT_EQ(image.space, name + "-time");
+        for (const std::string time : {"T", "t"}) {
+            EXPECT_EQ(read(short_name + time).space, image.space);
+        }
+        write_image(path("written.nrrd"), image);
+        EXPECT_EQ(read_image(path("written.nrrd")).space, name);
+        EXPECT_EQ(content("written.nrrd").find("space dimension"), std::string::npos);
+    }
+    EXPECT_EQ(read_image(write("a.nrrd", changed(kNrrd, "space dimension: 3", "space: lpsx") + bytes())).space, "lpsx");
+}
+
 TEST_F(ImageIo, SegmentsOfSlicerHaveNames) {
     const std::string segments =
         "Segment0_ID:=Segment_1\nSegment0_LabelValue:=3\nSegment0_Layer:=0\nSegment0_Name:=left part\n"

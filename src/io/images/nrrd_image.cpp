@@ -151,12 +151,17 @@ std::string nrrd_unit(const ImageHead& head) {
     return is_one && words[0] != "???" ? std::string(words[0]) : std::string();
 }
 
+constexpr std::string_view kTimeOfSpace = "-time";
+
 std::string nrrd_space(const ImageHead& head) {
     const std::string name = head.text("space");
-    return name == "ras"   ? "right-anterior-superior"
-           : name == "las" ? "left-anterior-superior"
-           : name == "lps" ? "left-posterior-superior"
-                           : name;
+    const bool has_time = name.size() == 4 && name.ends_with('t');
+    const std::string letters = has_time ? name.substr(0, 3) : name;
+    const std::string words = letters == "ras"   ? "right-anterior-superior"
+                              : letters == "las" ? "left-anterior-superior"
+                              : letters == "lps" ? "left-posterior-superior"
+                                                 : "";
+    return words.empty() ? name : words + std::string(has_time ? kTimeOfSpace : "");
 }
 
 /// A segment of 3D Slicer.
@@ -323,13 +328,15 @@ void write_nrrd_image(OutputFile& out, const Image& image) {
     // Either the space or its dimension. Without the space, viewers take NRRD as left, posterior, superior.
     constexpr std::array kSpaces{"right-anterior-superior", "left-anterior-superior", "left-posterior-superior",
                                  "scanner-xyz"};
-    const bool has_space = std::ranges::find(kSpaces, image.space) != kSpaces.end();
+    std::string_view space = image.space;  // that of one volume of a series
+    space.remove_suffix(space.ends_with(kTimeOfSpace) ? kTimeOfSpace.size() : 0);
+    const bool has_space = std::ranges::find(kSpaces, space) != kSpaces.end();
     const Point& origin = image.origin;
     const auto& [a, b, c] = image.steps;
     const std::string quoted = '"' + image.unit + '"';
     const std::string units = image.unit.empty() ? "" : "space units: " + quoted + ' ' + quoted + ' ' + quoted + '\n';
     out.text("NRRD0004\n# made by scaleaxis\ntype: float\ndimension: 3\n",
-             has_space ? "space: " + image.space : "space dimension: 3", "\nsizes: ", image.sizes[0], ' ',
+             has_space ? "space: " + std::string(space) : "space dimension: 3", "\nsizes: ", image.sizes[0], ' ',
              image.sizes[1], ' ', image.sizes[2], "\nspace directions: (", a.x, ',', a.y, ',', a.z, ") (", b.x, ',',
              b.y, ',', b.z, ") (", c.x, ',', c.y, ',', c.z, ")\nkinds: domain domain domain\n",
              "endian: little\nencoding: raw\nspace origin: (", origin.x, ',', origin.y, ',', origin.z, ")\n", units,
