@@ -639,6 +639,19 @@ TEST(Image, SaysWhichLabelsThereAre) {
     EXPECT_NE(message_of([&] { load_solid(image, options); }).find("beyond 2^24"), std::string::npos);
 }
 
+// As where the name of a segment and its number are given.
+TEST(Image, ALabelThatIsGivenTwiceCountsOnce) {
+    Image image = touching_labels();
+    image.label_names = {{9.0F, "nine"}};
+    EXPECT_EQ(mask(image, std::array{9.0F, -4.0F, 9.0F}).values, mask(image, std::array{-4.0F, 9.0F}).values);
+    EXPECT_THROW(mask(image, std::array{9.0F, 3.0F, 3.0F}), UnusableInput);
+    LoadOptions options;
+    options.labels = {9.0F};
+    const LoadedSolid once = load_solid(image, options);
+    options.label_names = {"nine"};
+    expect_same_solid(once, load_solid(image, options));
+}
+
 TEST(Image, AMaskOfALabelIsAsLargeAsItIsLookedAt) {
     const Image image = sampled(
         [](const Point& p) {

@@ -244,6 +244,17 @@ def test_the_largest_label_of_single_precision_is_one(tmp_path, kind):
         scaleaxis.axis(values, labels=2**24 + 1)
 
 
+def test_a_label_that_is_given_twice_counts_once():
+    values = two_beyond(3)
+    for first in (3, 2**24 + 3):  # labels of more than 24 bits are numbered
+        values[2:7, 2:7, 2:7], values[9:14, 9:14, 9:14] = first, first + 1
+        expected = scaleaxis.axis(values, 0.1, labels=[first, first + 1])
+        found = scaleaxis.axis(values, 0.1, labels=[first + 1, first, first + 1])
+        np.testing.assert_array_equal(found.vertices, expected.vertices)
+        with pytest.raises(scaleaxis.UnusableInput, match=f"no voxel has the label {first + 2}"):
+            scaleaxis.axis(values, labels=[first, first + 2, first + 2])
+
+
 def test_each_label_calls_any_function():
     values = labelled()
     curves = dict(scaleaxis.each_label(scaleaxis.skeleton, values, delta=0.05, **PLACE))

@@ -443,6 +443,9 @@ def test_memory_is_refused_before(tmp_path: Path) -> None:
         ({"smoothing": 9}, "smoothing must"),
         ({"memory": "much"}, "memory must"),
         ({"label": 77}, "no voxel is inside"),
+        ({"label": [77, 78]}, "no voxel is inside"),
+        ({"label": [1, 77]}, "no voxel has the label 77"),
+        ({"label": []}, "label is an empty list"),
         ({"label": 1, "level": 0.5}, "exclude each other"),
         ({"axis": False}, "nothing is wanted"),
     ],
@@ -499,6 +502,22 @@ def test_levels_and_labels(tmp_path: Path) -> None:
     run(saved(tmp_path, labels()), tmp_path / "labels", axis=False, thickness=True)
     rows = (tmp_path / "labels/labels.csv").read_text().splitlines()
     assert [int(row.split(",")[1]) for row in rows[1:]] == [int((labels() == label).sum()) for label in (1, 2, 3)]
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.int64, np.float32])
+def test_labels_that_are_in_some_blocks_only(dtype: Any, tmp_path: Path) -> None:
+    """A label may be given twice, and all of them have to be somewhere."""
+    array = np.zeros((8, 8, 96), dtype)
+    array[2:6, 2:6, 2:6], array[2:6, 2:6, 80:84] = 1, 2
+    source = saved(tmp_path, array)
+    known = run(source, tmp_path / "known", label=[1, 2], block=32)
+    assert known.topology is not None and known.topology.components == 2
+    again = run(source, tmp_path / "again", label=[1, 2, 1], block=32)
+    assert again.axis is not None and known.axis is not None
+    assert np.array_equal(again.axis.vertices, known.axis.vertices)
+    for label in (0, 3):
+        with pytest.raises(InvalidOption, match="no voxel has the label 3"):
+            run(source, tmp_path / "other", label=[label, 1, 2, 3], block=32)
 
 
 def test_unreadable(tmp_path: Path) -> None:

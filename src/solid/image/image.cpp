@@ -391,10 +391,10 @@ Image mask(Image image, std::span<const float> labels, const Execution& executio
             is_empty = is_empty && !is_inside;
             value = is_inside ? 1.0F : 0.0F;
         }
-        for (std::size_t i = 0; i < labels.size(); ++i) {
-            if (counts[i] == 0) {
+        for (const float label : labels) {
+            if (counts[std::ranges::find(labels, label) - labels.begin()] == 0) {  // the first of equal ones
                 Words text;
-                text << "no voxel has the label " << labels[i] << "; choose one that the image has";
+                text << "no voxel has the label " << label << "; choose one that the image has";
                 throw UnusableInput(text.str());
             }
         }

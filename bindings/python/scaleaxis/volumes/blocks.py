@@ -263,14 +263,16 @@ def blocks_of(low: Triple, high: Triple, edge: int) -> Iterator[tuple[Triple, Tr
 
 
 def _depths(task: Task) -> dict[str, Any]:
-    """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges. Empty space
-    takes less time than a process: one does many blocks, one after the other.
+    """Of each cell of the core the voxels inside, the largest depth, and the crossings of lattice edges; which labels
+    are there, of several that are solid. Empty space takes less time than a process: one does many blocks, one after
+    the other.
     """
     rows = [
         _depths_of_block(task._replace(low=low, high=high)) for low, high in blocks_of(task.low, task.high, task.edge)
     ]
     cells = [cell for row in rows for cell in row["cells"]]
-    return {"cells": cells, "labels": merged_labels(row["labels"] for row in rows)}
+    chosen = sorted({label for row in rows for label in row["chosen"]})
+    return {"cells": cells, "labels": merged_labels(row["labels"] for row in rows), "chosen": chosen}
 
 
 def _depths_of_block(task: Task) -> dict[str, Any]:
@@ -278,14 +280,19 @@ def _depths_of_block(task: Task) -> dict[str, Any]:
     values, _ = _array(source, *_limits(task, 0))
     shape = tuple(b - a for a, b in zip(task.low, task.high))[::-1]
     labels: dict[str, list[int]] = {}
+    chosen: list[int] = []
     if source.level is None:
         boxes = [_voxels(box, shape) for box in boxes_of(_occupied(values, shape))]
         labels = merged_labels(_labels(values[box], _part_of_core(task, box).low) for box in boxes)
     if source.level is not None or source.labels:
-        boxes = [_voxels(box, shape) for box in boxes_of(_occupied(_mask(source, values), shape))]
+        mask = _mask(source, values)
+        boxes = [_voxels(box, shape) for box in boxes_of(_occupied(mask, shape))]
+        inside = values[mask != 0] if len(source.labels) > 1 else values[:0]
+        chosen = [label for label in source.labels if (inside == label).any()]
+        del mask, inside
     del values
     cells = [cell for box in boxes for cell in _depths_of_box(_part_of_core(task, box))]
-    return {"cells": cells, "labels": labels}
+    return {"cells": cells, "labels": labels, "chosen": chosen}
 
 
 def _depths_of_box(task: Task) -> list[list[int]]:

@@ -361,6 +361,14 @@ def _write_report(storage: Storage, told: dict[str, Any]) -> None:
         storage.write("report.json", json.dumps(told, indent=1).encode())
 
 
+def _check_labels(source: Source, depth_rows: list[Row]) -> None:
+    """Raises InvalidOption if one of several labels is that of no voxel."""
+    found = {label for row in depth_rows for label in row["chosen"]}
+    absent = [label for label in source.labels if label not in found]
+    if absent and len(source.labels) > 1:
+        raise InvalidOption(f"no voxel has the label {absent[0]}: choose labels that the volume has")
+
+
 def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, memory: int, block: int | None) -> Report:
     storage, share = runs.storage, memory // runs.workers
     threads = max(1, processors() // runs.workers) if runs.scheduler is None else 1
@@ -373,12 +381,13 @@ def _results(runs: _Runs, source: Source, options: Options, wanted: _Wanted, mem
     first = first_edge(share)
     together = max(first, _TOGETHER // first * first)
     places = blocks_of((0, 0, 0), source.sizes, together)
-    depth_rows = runs.rows([task("depths", low, high, unused, 0, edge=first) for low, high in places])
+    depth_rows = runs.rows([task("depths", low, high, unused, "chosen", edge=first) for low, high in places])
     depths = DepthMap.of(source.sizes, depth_rows)
     edge, blocks = depths.plan(options.scale if wanted.axis else None, share, block)
     largest = float(depths.depths.max())
     if not blocks:
         raise InvalidOption("no voxel is inside: another label or level?")
+    _check_labels(source, depth_rows)
     step = max(_FINEST, 2 * largest / 65535)
     chunk = math.gcd(edge, 128)
     if wanted.thickness:
@@ -489,7 +498,8 @@ def volume(
         this length are removed, as by `filter` and `clean`: `filtered.ply`.
     skeleton: the curve skeleton of what is left: `skeleton.swc`, and `skeletons`, precomputed for Neuroglancer.
 
-    Raises InvalidOption before any work, or if a block needs more than its share of the memory; FileError where the
+    Raises InvalidOption before any work, or before any axis if no voxel has one of the labels, or if a block needs more
+    than its share of the memory; FileError where the
     volume cannot be read; Error naming a block that has no result.
     """
     _options(scale, smoothing, seed)
@@ -504,7 +514,9 @@ def volume(
     at_a_time = processors() if workers is None else workers
     if not isinstance(at_a_time, int) or at_a_time < 1:
         raise InvalidOption(f"workers must be at least 1, not {workers!r}")
-    labels = () if label is None else (label,) if isinstance(label, int) else tuple(label)
+    labels = () if label is None else (label,) if isinstance(label, int) else tuple(dict.fromkeys(label))
+    if label is not None and not labels:
+        raise InvalidOption("label is an empty list: give a label, or None for all voxels other than 0")
     known = (
         source
         if isinstance(source, Source)
