@@ -1641,6 +1641,13 @@ TEST_F(ImageIo, CalibrationOfTiff) {
     expect("", {1, 1, 1}, "");
     expect("a stack", {0.2, 0.5, 1}, "", 3);
     expect("a stack", {25.4 / 50, 25.4 / 20, 1}, "", 2);
+    // Millimetres and micrometres, which libtiff does not know.
+    expect("a stack", {0.02, 0.05, 1}, "", 4);
+    expect("a stack", {0.02e-3, 0.05e-3, 1}, "", 5);
+    expect("ImageJ=1.53t\nimages=4\nslices=4\n", {0.02, 0.05, 1}, "mm", 4);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3, "unit": "um"})", {20, 50, 0.3}, "um", 4);
+    expect(R"({"shape": [4, 3, 2], "spacing": 0.3, "unit": "um"})", {0.02, 0.05, 0.3}, "um", 5);
+    expect_in("its page 1 is damaged", error_of("unit.tif", tiff(bytes(), 2, "a stack", 77)));
     // ImageJ: resolutions in its unit.
     expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=micron\nspacing=0.3\nloop=false\n", {0.02, 0.05, 0.3}, "um");
     expect("ImageJ=1.53t\nimages=4\nslices=4\nunit=\\u00B5m\nspacing=0.3\n", {0.02, 0.05, 0.3}, "um");

@@ -30,7 +30,8 @@ namespace {
 struct TiffBytes {
     std::string_view content;
     std::uint64_t at = 0;
-    bool has_failed = false;  ///< libtiff has said that something is wrong
+    bool has_failed = false;                    ///< libtiff has said that something is wrong
+    std::uint16_t unit_unknown_to_libtiff = 0;  ///< of the resolution; 0: none
 };
 
 TiffBytes& bytes_of(thandle_t handle) { return *static_cast<TiffBytes*>(handle); }
@@ -54,8 +55,30 @@ toff_t seek_tiff_bytes(thandle_t handle, toff_t offset, int whence) {
 int close_tiff_bytes(thandle_t) { return 0; }
 toff_t size_of_tiff_bytes(thandle_t handle) { return bytes_of(handle).content.size(); }
 
-int note_tiff_error(TIFF*, void* bytes, const char*, const char*, va_list) {
-    static_cast<TiffBytes*>(bytes)->has_failed = true;
+// Units of resolution of a later draft of TIFF, which tifffile writes. libtiff refuses their values.
+constexpr std::uint16_t kMillimetre = 4;
+constexpr std::uint16_t kMicrometre = 5;
+
+/// One of these units, if this is what libtiff's words of an error are about; else 0.
+std::uint16_t unit_in_error(std::string_view text) {
+    for (const std::uint16_t unit : {kMillimetre, kMicrometre}) {
+        if (text.ends_with("Bad value " + std::to_string(unit) + " for \"ResolutionUnit\" tag")) {
+            return unit;
+        }
+    }
+    return 0;
+}
+
+int note_tiff_error(TIFF*, void* to, const char*, const char* format, va_list arguments) {
+    constexpr std::size_t kMost = 128;  // that of a unit has half as many
+    std::array<char, kMost> text{};
+    std::vsnprintf(text.data(), text.size(), format, arguments);
+    auto& bytes = *static_cast<TiffBytes*>(to);
+    if (const std::uint16_t unit = unit_in_error(text.data()); unit != 0) {
+        bytes.unit_unknown_to_libtiff = unit;
+    } else {
+        bytes.has_failed = true;
+    }
     return 1;  // and nobody else is told
 }
 
@@ -91,6 +114,11 @@ template <class Value>
 Value tiff_field(TIFF* tiff, std::uint32_t tag, Value otherwise) {
     Value value = otherwise;
     return TIFFGetField(tiff, tag, &value) == 1 ? value : otherwise;
+}
+
+std::uint16_t resolution_unit(TIFF* tiff) {
+    const std::uint16_t unit = bytes_of(TIFFClientdata(tiff)).unit_unknown_to_libtiff;
+    return unit != 0 ? unit : tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE});
 }
 
 /// What all pages of a volume have in common.
@@ -241,13 +269,23 @@ std::optional<double> micrometres_of(std::string_view unit) {
     return known == kUnits.end() ? std::nullopt : std::optional(known->second);
 }
 
+/// The unit of a resolution, as other formats name it; empty: none.
+std::string_view name_of_unit(std::uint16_t unit) {
+    return unit == RESUNIT_INCH         ? "inch"
+           : unit == RESUNIT_CENTIMETER ? "cm"
+           : unit == kMillimetre        ? "mm"
+           : unit == kMicrometre        ? "um"
+                                        : "";
+}
+
 /// A number of voxels a unit of length, as that length.
 double length_of(double resolution) { return std::isfinite(resolution) && resolution > 0.0 ? 1.0 / resolution : 1.0; }
 
 /// The resolution of pages, in millimetres if it is that of a length. Nothing says how far they are apart.
 Calibration calibration_of_pages(TIFF* tiff) {
-    const auto unit = tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE});
-    const double length = unit == RESUNIT_INCH ? 25.4 : 10.0;
+    const std::uint16_t unit = resolution_unit(tiff);
+    constexpr double kInch = 25'400.0;  // micrometres
+    const double length = micrometres_of(name_of_unit(unit)).value_or(kInch) / 1000.0;
     Calibration result;
     for (const int axis : {0, 1}) {
         const float resolution = tiff_field(tiff, axis == 0 ? TIFFTAG_XRESOLUTION : TIFFTAG_YRESOLUTION, 0.0F);
@@ -286,8 +324,7 @@ Calibration calibration_of_imagej(TIFF* tiff, std::string_view text, std::size_t
     if (count("channels") > 1 || count("frames") > 1) {
         fail_at_series(count("channels") > 1 ? "channels" : "frames");
     }
-    const auto tag = tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE});
-    const std::string_view unit = tag == RESUNIT_INCH ? "inch" : tag == RESUNIT_CENTIMETER ? "cm" : "";
+    const std::string_view unit = name_of_unit(resolution_unit(tiff));
     const double depth = parse_number(value_of_line(text, "spacing").value_or("1")).value_or(1.0);
     return {{length_of(tiff_field(tiff, TIFFTAG_XRESOLUTION, 0.0F)),
              length_of(tiff_field(tiff, TIFFTAG_YRESOLUTION, 0.0F)), std::abs(depth)},
@@ -379,9 +416,8 @@ std::optional<Calibration> calibration_of_array(TIFF* tiff, std::string_view tex
     result.unit = unit_named(text_of("unit"));
     if (!result.unit.empty()) {
         // In that unit as in ImageJ; inches are what tifffile writes where nothing is said.
-        const bool is_metric =
-            tiff_field(tiff, TIFFTAG_RESOLUTIONUNIT, std::uint16_t{RESUNIT_NONE}) == RESUNIT_CENTIMETER;
-        const double length = is_metric ? 1e4 / micrometres_of(result.unit).value_or(1e4) : 1.0;
+        const std::optional<double> metric = micrometres_of(name_of_unit(resolution_unit(tiff)));
+        const double length = metric ? *metric / micrometres_of(result.unit).value_or(*metric) : 1.0;
         result.spacing[0] = length * length_of(tiff_field(tiff, TIFFTAG_XRESOLUTION, 0.0F));
         result.spacing[1] = length * length_of(tiff_field(tiff, TIFFTAG_YRESOLUTION, 0.0F));
     }
