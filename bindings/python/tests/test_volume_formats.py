@@ -14,9 +14,10 @@ import nrrd
 import numpy as np
 import numpy.typing as npt
 import pytest
+import scaleaxis
 import tensorstore
 import zarr
-from scaleaxis import FileError, InvalidOption
+from scaleaxis import Error, FileError, InvalidOption
 from scaleaxis.volumes import volume
 from scaleaxis.volumes.sources import Source, source_of
 
@@ -268,6 +269,34 @@ def test_nifti(form: str, kind: str, dtype: str, tmp_path: Path) -> None:
     steps = np.array(nibabel.load(tmp_path / "v.nii").affine)[:3, :3].T / 2
     expected = np.eye(3) if form == "neither" else steps
     assert np.allclose(source.directions, expected, atol=1e-6)
+
+
+@pytest.mark.parametrize("dtype", ["<f4", ">f8"])
+def test_what_is_not_a_number_is_0_in_nifti(dtype: str, tmp_path: Path) -> None:
+    values = values_of(dtype)
+    values[3, 2, 1], values[4, 5, 6], values[7, 8, 9] = np.nan, np.inf, -np.inf
+    nibabel.save(nibabel.Nifti1Image(values.T, np.eye(4)), tmp_path / "v.nii")
+    found = source_of(tmp_path / "v.nii").read((0, 0, 0), SIZES)
+    assert np.array_equal(found, np.where(np.isfinite(values), values, 0))
+    assert np.array_equal(found, scaleaxis.read_image(tmp_path / "v.nii").values.T)
+
+
+@pytest.mark.parametrize("dtype", ["<f4", ">f8"])
+def test_what_is_not_a_number_is_refused_in_other_formats(dtype: str, tmp_path: Path) -> None:
+    values = values_of(dtype)
+    values[13, 12, 11] = np.nan
+    np.save(tmp_path / "v.npy", values)
+    nrrd.write(str(tmp_path / "v.nrrd"), values.T, {"encoding": "raw"}, index_order="F")
+    zarr.save_array(str(tmp_path / "v.zarr"), values)
+    for name in ("v.npy", "v.nrrd", "v.zarr"):
+        source = source_of(tmp_path / name)
+        source.read((0, 0, 0), (11, 29, 23))
+        with pytest.raises(FileError, match=r"voxel \(11, 12, 13\) is not a number"):
+            source.read((7, 8, 9), SIZES)
+        with pytest.raises(Error, match=r"voxel \(11, 12, 13\) is not a number"):
+            volume(source, tmp_path / "out", workers=1)
+    with pytest.raises(FileError, match=r"voxel \(11, 12, 13\) is not a number"):
+        scaleaxis.axis(tmp_path / "v.nrrd", nonzero=True)
 
 
 @pytest.mark.parametrize("order", ["C", "F"])

@@ -77,7 +77,19 @@ def _read(path: str, kind: str, dataset: str | None, low: Triple, high: Triple) 
         place = ", ".join(map(str, low))
         raise fault(path, f"the voxels from {place} on cannot be read: a chunk there is damaged") from None
     # What is left are the three axes, in the order of the array.
-    return np.ascontiguousarray(values.transpose(np.argsort(np.argsort(opened.axes))))
+    values = np.ascontiguousarray(values.transpose(np.argsort(np.argsort(opened.axes))))
+    return values if values.dtype.kind != "f" else _numbers(path, kind, values, low)
+
+
+def _numbers(path: str, kind: str, values: Values, low: Triple) -> Values:
+    """As `read_image` takes values that are not numbers: 0 in NIfTI; in others FileError is raised."""
+    if kind == "nifti":
+        return np.where(np.isfinite(values), values, values.dtype.type(0))
+    for k, layer in enumerate(values):  # so that little memory is taken beside the values
+        if np.isnan(layer).any():
+            j, i = np.argwhere(np.isnan(layer))[0].tolist()
+            raise fault(path, f"voxel ({low[0] + i}, {low[1] + j}, {low[2] + k}) is not a number")
+    return values
 
 
 def _kind_of(path: str) -> str:
