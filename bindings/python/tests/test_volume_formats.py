@@ -42,6 +42,15 @@ def check(source: Source, values: Values, *, origin: Any = (0, 0, 0), spacing: f
         assert np.array_equal(found, values[tuple(slice(a, b) for a, b in zip(low[::-1], high[::-1]))])
 
 
+def check_as_read(path: Path) -> None:
+    """That the voxels lie where `read_image` has them."""
+    source, image = source_of(path), scaleaxis.read_image(path)
+    assert source.sizes == image.values.shape
+    assert np.allclose(source.origin, image.origin, atol=1e-6)
+    assert np.allclose(np.array(source.directions) * source.spacing, image.steps, atol=1e-6)
+    assert np.array_equal(source.read((0, 0, 0), source.sizes), image.values.T)
+
+
 def ome(name: str, folder: Path, values: Values, axes: str, kind: int, transforms: Any) -> Path:
     """As zarr writes it, with axes in any order; c and t have one entry."""
     path = folder / f"{name}.zarr"
@@ -250,6 +259,43 @@ def test_nrrd_without_space(tmp_path: Path) -> None:
     check(source_of(tmp_path / "v.nrrd"), values_of("u2"), spacing=3.0)
 
 
+@pytest.mark.parametrize(
+    "fields",
+    [
+        "spacings: 3 3 3",
+        "spacings: 3 -3 3",
+        "spacings: 1 nan none",
+        "spacings: 3 3 3\naxis mins: 1 2 4",
+        "spacings: 3 3 3\naxis mins: 1 nan 4\ncenters: node cell ???",
+        "axis mins: 1 2 4\naxis maxs: 7 10 14",
+        "axismins: 1 2 4\naxismaxs: 4 6 9\ncenterings: Cell cell ???",
+        "axis mins: 1 2 4\naxis maxs: 5 8 12\ncenters: node node node",
+        "axis mins: 1 2 4\naxis maxs: 7 8 12\ncenters: ??? node node",
+        "axis mins: 1 2 4\nspacings: 2 2 2\nspacings:=3 3 3\n# spacings: 4 4 4\na key:=axis maxs: 1 1 1",
+        "space directions: (0,2,0) (2,0,0) (0,0,-2)\nspace origin: (1,2,3)",
+    ],
+)
+def test_nrrd_lies_where_read_image_has_it(fields: str, tmp_path: Path) -> None:
+    head = f"NRRD0004\ntype: uint8\ndimension: 3\nsizes: 3 4 5\nendian: little\nencoding: raw\n{fields}\n\n"
+    (tmp_path / "v.nrrd").write_bytes(head.encode() + bytes(range(60)))
+    check_as_read(tmp_path / "v.nrrd")
+
+
+@pytest.mark.parametrize(
+    ("slope", "shift"), [(0, 0), (0, 3), (1, 0), (np.nan, np.nan), (np.nan, 2), (np.inf, 0), (1, np.nan)]
+)
+def test_nifti_that_is_not_scaled(slope: float, shift: float, tmp_path: Path) -> None:
+    nibabel.save(nibabel.Nifti1Image(values_of("<i2").T, np.eye(4)), tmp_path / "v.nii")
+    content = bytearray((tmp_path / "v.nii").read_bytes())
+    content[112:120] = np.array([slope, shift], "<f4").tobytes()
+    (tmp_path / "v.nii").write_bytes(content)
+    check_as_read(tmp_path / "v.nii")
+    content[112:120] = np.array([2, 0], "<f4").tobytes()
+    (tmp_path / "v.nii").write_bytes(content)
+    with pytest.raises(FileError, match="has scaled values"):
+        source_of(tmp_path / "v.nii")
+
+
 @pytest.mark.parametrize("dtype", ["u1", "<u2", ">u2", ">i4", "<f4", ">f8"])
 @pytest.mark.parametrize("kind", ["Nifti1Image", "Nifti2Image"])
 @pytest.mark.parametrize("form", ["sform", "qform", "neither"])
@@ -267,8 +313,9 @@ def test_nifti(form: str, kind: str, dtype: str, tmp_path: Path) -> None:
     place = (0, 0, 0) if form == "neither" else (5, 6, 7)
     check(source, values, origin=place, spacing=2.0, unit="millimeter")
     steps = np.array(nibabel.load(tmp_path / "v.nii").affine)[:3, :3].T / 2
-    expected = np.eye(3) if form == "neither" else steps
+    expected = np.diag([-1, -1, 1]) if form == "neither" else steps
     assert np.allclose(source.directions, expected, atol=1e-6)
+    check_as_read(tmp_path / "v.nii")
 
 
 @pytest.mark.parametrize("dtype", ["<f4", ">f8"])

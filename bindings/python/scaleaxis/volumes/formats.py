@@ -104,15 +104,33 @@ def _nrrd_header(path: str) -> tuple[dict[str, str], int]:
             raise fault(path, "is no NRRD")
         fields = {}
         while line := file.readline().decode("utf-8", "replace").strip():
-            if not line.startswith("#"):
-                name, _, value = line.partition(":")
-                fields[name.strip().lower().replace(" ", "")] = value.lstrip("= ").strip()
+            name, colon, value = line.partition(": ")
+            if colon and not name.startswith("#") and ":=" not in name:  # those of keys are no fields
+                fields[name.strip().lower().replace(" ", "")] = value.strip()
         return fields, file.tell()
 
 
 def _vectors(text: str) -> Values:
     found = re.findall(r"\(([^)]*)\)", text)
     return np.array([[float(x) for x in vector.split(",")] for vector in found])
+
+
+def _nrrd_place(fields: dict[str, str], sizes: list[int]) -> tuple[list[float], list[float]]:
+    """Spacing and origin of an image without directions, as `read_image` has them: what is not said follows from the
+    ends of the axes, which are corners of cells, or nodes.
+    """
+
+    def numbers(name: str) -> list[float]:
+        words = fields[name].split() if name in fields else ["nan"] * 3
+        return [math.nan if word == "none" else float(word) for word in words]
+
+    kinds = fields.get("centers", fields.get("centerings", "??? ??? ???"))
+    is_node = [kind.lower() == "node" for kind in kinds.split()]
+    lows, highs = numbers("axismins"), numbers("axismaxs")
+    ranges = [(b - a) / max(1, n - node) for a, b, n, node in zip(lows, highs, sizes, is_node)]
+    spacing = [of if math.isnan(told) else told for told, of in zip(numbers("spacings"), ranges)]
+    origin = [a if node or math.isnan(step) else a + step / 2 for a, step, node in zip(lows, spacing, is_node)]
+    return [1.0 if math.isnan(x) else x for x in spacing], [0.0 if math.isnan(x) else x for x in origin]
 
 
 def open_nrrd(path: str, _: str | None) -> Opened:
@@ -142,12 +160,7 @@ def open_nrrd(path: str, _: str | None) -> Opened:
     if "spacedirections" in fields:
         origin = _vectors(fields.get("spaceorigin", "(0,0,0)"))[0]
         return Opened(array, (0, 1, 2), _vectors(fields["spacedirections"]), tuple(origin.tolist()), unit)
-    spacing = [x if math.isfinite(x) else 1.0 for x in map(float, fields.get("spacings", "1 1 1").split())]
-    mins = [x if math.isfinite(x) else 0.0 for x in map(float, fields.get("axismins", "nan nan nan").split())]
-    if "axismins" in fields:  # of cells these are the corners, of nodes the centres
-        kinds = re.findall("node|cell", fields.get("centers", fields.get("centerings", ""))) or ["cell"] * 3
-        mins = [at + (step / 2 if kind == "cell" else 0.0) for at, step, kind in zip(mins, spacing, kinds)]
-    return _upright(array, (0, 1, 2), spacing, mins, unit)
+    return _upright(array, (0, 1, 2), *_nrrd_place(fields, sizes), unit)
 
 
 class _Nifti(NamedTuple):
@@ -213,10 +226,11 @@ def open_nifti(path: str, _: str | None) -> Opened:
     if dim[0] < 3 or any(n > 1 for n in dim[4 : dim[0] + 1]) or code not in _NIFTI_TYPES:
         raise fault(path, "is no image of three dimensions with one number a voxel")
     slope, shift = numbers(at.real, at.slope, 2)
-    if (slope, shift) not in ((0.0, 0.0), (1.0, 0.0)):
+    is_scale = math.isfinite(slope) and slope != 0
+    if is_scale and (slope, shift if math.isfinite(shift) else 0.0) != (1.0, 0.0):
         raise fault(path, "has scaled values: convert it to Zarr")
     dtype = np.dtype(order + _NIFTI_TYPES[code])
-    array = _mapped(path, path, dtype, int(numbers(*at.offset)[0]), tuple(dim[3:0:-1]))
+    array = _mapped(path, path, dtype, max(size, int(numbers(*at.offset)[0])), tuple(dim[3:0:-1]))
     unit = {1: "meter", 2: "millimeter", 3: "micrometer"}.get(numbers(*at.units)[0] & 7, "")
     pixdim = numbers(at.real, at.pixdim, 4)
     if numbers(at.code, at.sform)[0] > 0:
@@ -226,7 +240,8 @@ def open_nifti(path: str, _: str | None) -> Opened:
         b, c, d, *origin = numbers(at.real, at.quaternion, 6)
         sides = np.array(pixdim[1:]) * [1, 1, -1 if pixdim[0] < 0 else 1]
         return Opened(array, (0, 1, 2), (_turned(b, c, d) * sides).T, tuple(origin), unit)
-    return _upright(array, (0, 1, 2), pixdim[1:], [0.0] * 3, unit)
+    # Without either x and y of the first voxels are at the right and in front.
+    return _upright(array, (0, 1, 2), [-pixdim[1], -pixdim[2], pixdim[3]], [0.0] * 3, unit)
 
 
 def _choice(path: str, dataset: str | None, there: Iterator[str]) -> InvalidOption:
