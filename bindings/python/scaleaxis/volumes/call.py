@@ -499,8 +499,7 @@ def volume(
     skeleton: the curve skeleton of what is left: `skeleton.swc`, and `skeletons`, precomputed for Neuroglancer.
 
     Raises InvalidOption before any work, or before any axis if no voxel has one of the labels, or if a block needs more
-    than its share of the memory; FileError where the
-    volume cannot be read; Error naming a block that has no result.
+    than its share of the memory; FileError where the volume cannot be read; Error naming a block that has no result.
     """
     _options(scale, smoothing, seed)
     if not (axis or thickness):
