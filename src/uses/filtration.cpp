@@ -34,25 +34,68 @@ constexpr int kClosedRings = 2;  // of faces around a vertex
 constexpr double kPlateauLoss = 0.02;
 constexpr double kLargestPlateauScale = 2.0;
 
-// Collapses a complex, always what its balls allow first. \param earliest scales at which the vertices may vanish
-void collapse_by_scale(Filtration& filtration, std::span<const double> earliest) {
+// What balls allow: when vertices, and faces, may vanish.
+struct Earliest {
+    std::vector<double> vertices;
+    std::vector<double> faces;
+};
+
+// Vertices whose balls may stay for the sake of one sheet, and say nothing of the others.
+std::vector<std::uint8_t> vertices_on_seams(const MedialComplex& complex, const IndexLists& faces_at) {
+    std::vector<std::uint8_t> result(complex.vertices.size());
+    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+        if (faces_at[e].size() > 2) {
+            for (const Index v : complex.edges[e]) {
+                result[v] = 1;
+            }
+        }
+    }
+    return result;
+}
+
+// Faces may vanish when all their balls off the seams have; one without such a ball when those beside it in its sheet
+// may.
+std::vector<double> scales_of_faces(const MedialComplex& complex, const IndexLists& faces_at,
+                                    std::span<const double> scales, const std::vector<std::uint8_t>& is_on_seam) {
+    constexpr double kUnknown = 0.0;
+    const std::vector<double> of_balls = mapped<double>(complex.faces.size(), [&](std::size_t f) {
+        double scale = kUnknown;
+        for (const Index v : complex.faces[f]) {
+            scale = is_on_seam[v] == 0 ? std::max(scale, scales[v]) : scale;
+        }
+        return scale;
+    });
+    return mapped<double>(complex.faces.size(), [&](std::size_t f) {
+        double scale = of_balls[f];
+        if (scale == kUnknown) {
+            for (const Index e : complex.face_edges[f]) {
+                for (const Index other : faces_at[e].size() == 2 ? faces_at[e] : std::span<const Index>()) {
+                    scale = std::max(scale, of_balls[other]);
+                }
+            }
+        }
+        if (scale == kUnknown) {
+            for (const Index v : complex.faces[f]) {
+                scale = std::max(scale, scales[v]);
+            }
+        }
+        return scale;
+    });
+}
+
+// Collapses a complex, always what its balls allow first.
+void collapse_by_scale(Filtration& filtration, const Earliest& earliest) {
     const MedialComplex& complex = filtration.complex;
     filtration.vertex_scales.assign(complex.vertices.size(), kNeverVanishes);
     filtration.edge_scales.assign(complex.edges.size(), kNeverVanishes);
     filtration.face_scales.assign(complex.faces.size(), kNeverVanishes);
-    const auto scale_of = [&](std::span<const Index> vertices) {
-        double scale = 1.0;
-        for (const Index v : vertices) {
-            scale = std::max(scale, earliest[v]);
-        }
-        return scale;
-    };
-    // When all balls of the face, or that of the free end, have vanished, and when those of the edge have.
+    // When the balls of the face, or that of the free end, allow it, and when those of the edge have vanished.
     using Key = std::pair<double, double>;
     const auto key_of = [&](const ElementaryCollapse& collapse) {
         const auto& [has_face, element, free] = collapse;
-        const Key key = has_face ? Key{scale_of(complex.faces[element]), scale_of(complex.edges[free])}
-                                 : Key{earliest[free], scale_of(complex.edges[element])};
+        const auto& [p, q] = complex.edges[has_face ? free : element];
+        const Key key{has_face ? earliest.faces[element] : earliest.vertices[free],
+                      std::max(earliest.vertices[p], earliest.vertices[q])};
         return key.first < kNeverVanishes ? std::optional(key) : std::nullopt;
     };
     double scale = 1.0;
@@ -68,15 +111,21 @@ void collapse_by_scale(Filtration& filtration, std::span<const double> earliest)
     collapses.run();
 }
 
-// Of each vertex the largest or the least of the values in its faces.
-std::vector<double> spread(const MedialComplex& complex, const std::vector<double>& values, bool is_largest) {
+// Of each vertex off the seams the largest or the least of the values of such in its faces.
+std::vector<double> spread(const MedialComplex& complex, const std::vector<double>& values,
+                           const std::vector<std::uint8_t>& is_on_seam, bool is_largest) {
     std::vector<double> result = values;
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        const std::span<const Index> corners = complex.faces[f];
-        const auto value = [&](Index v) { return values[v]; };
-        const auto [least, largest] = std::ranges::minmax_element(corners, {}, value);
-        for (const Index v : corners) {
-            result[v] = is_largest ? std::max(result[v], values[*largest]) : std::min(result[v], values[*least]);
+        double most = is_largest ? 1.0 : kInfinity;
+        for (const Index v : complex.faces[f]) {
+            if (is_on_seam[v] == 0) {
+                most = is_largest ? std::max(most, values[v]) : std::min(most, values[v]);
+            }
+        }
+        for (const Index v : complex.faces[f]) {
+            if (is_on_seam[v] == 0) {
+                result[v] = is_largest ? std::max(result[v], most) : std::min(result[v], most);
+            }
         }
     }
     return result;
@@ -84,10 +133,11 @@ std::vector<double> spread(const MedialComplex& complex, const std::vector<doubl
 
 // The scales with narrow gaps filled, as a morphological closing does: s* depends on where exactly the vertices are, so
 // that the borders of levels would be ragged. No scale becomes smaller.
-std::vector<double> closed(const MedialComplex& complex, std::vector<double> scales) {
+std::vector<double> closed(const MedialComplex& complex, std::vector<double> scales,
+                           const std::vector<std::uint8_t>& is_on_seam) {
     for (const bool is_largest : {true, false}) {
         for (int ring = 0; ring < kClosedRings; ++ring) {
-            scales = spread(complex, scales, is_largest);
+            scales = spread(complex, scales, is_on_seam, is_largest);
         }
     }
     return scales;
@@ -225,7 +275,11 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_at_vertices(result.complex), options);
         report(execution, kFiltrationStage, 0.9);
-        collapse_by_scale(result, closed(result.complex, result.ball_scales));
+        const IndexLists faces_at = faces_at_edges(result.complex);
+        const std::vector<std::uint8_t> is_on_seam = vertices_on_seams(result.complex, faces_at);
+        Earliest earliest{closed(result.complex, result.ball_scales, is_on_seam), {}};
+        earliest.faces = scales_of_faces(result.complex, faces_at, earliest.vertices, is_on_seam);
+        collapse_by_scale(result, earliest);
         report(execution, kFiltrationStage, 1.0);
         return result;
     });
