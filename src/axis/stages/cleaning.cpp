@@ -616,8 +616,8 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
     Divided divided = Division(burnt, depths).run();
-    divided.edge_times = edge_times(burnt, divided.complex, divided.radii, divided.parents);
     keep_along_seams(divided);
+    divided.edge_times = edge_times(burnt, divided.complex, divided.radii, divided.parents, divided.is_low);
     report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();

@@ -93,6 +93,16 @@ BurntComplex before_the_fire(MedialComplex complex) {
     return result;
 }
 
+// The sector of a vertex at a face, or `kNone`.
+Index sector_in(const BurntComplex& burnt, Index face, Index v) {
+    const std::span<const Index> corners = burnt.complex.faces[face];
+    const auto corner = std::ranges::find(corners, v);
+    return corner == corners.end()
+               ? kNone
+               : burnt.sectors
+                     .of_corner[burnt.complex.faces.offsets[face] + static_cast<Index>(corner - corners.begin())];
+}
+
 // The first arrival at a point of a face that comes by one of its corners, and from which front.
 std::pair<Arrival, Index> arrival_in_face(const BurntComplex& burnt, Index face, const Point& x) {
     std::pair<Arrival, Index> first{{}, kNone};
@@ -121,14 +131,10 @@ Fire fire_on_parts(const BurntComplex& before, const BurntComplex& parts, std::s
     for (Index f = 0; f < static_cast<Index>(parents.size()); ++f) {
         const Index parent = parents[f];
         sheets[before.complex.face_sheets[parent]] = parts.complex.face_sheets[f];
-        const std::span<const Index> corners = before.complex.faces[parent];
         for (Index c = parts.complex.faces.offsets[f]; c < parts.complex.faces.offsets[f + 1]; ++c) {
             const Index v = parts.complex.faces.items[c];
             const Index sector = parts.sectors.of_corner[c];
-            if (const auto corner = std::ranges::find(corners, v); corner != corners.end()) {
-                const Index old =
-                    before.sectors
-                        .of_corner[before.complex.faces.offsets[parent] + static_cast<Index>(corner - corners.begin())];
+            if (const Index old = sector_in(before, parent, v); old != kNone) {
                 fire.sector_times[sector] = before.fire.sector_times[old];
                 fire.sector_paths[sector] = before.fire.sector_paths[old];
                 fire.sector_fronts[sector] = before.fire.sector_fronts[old];
@@ -162,21 +168,28 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
 }
 
 std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const std::vector<double>& radii,
-                               std::span<const Index> parents) {
+                               std::span<const Index> parents, std::span<const std::uint8_t> counts) {
     const Sides sides = sides_of(parts);
     std::vector<double> times(parts.edges.size(), kInfinity);
     for_each_index(static_cast<Index>(times.size()), [&](Index e) {
         const std::span<const Index> at = sides.of_edge[e];
-        if (at.size() == 1) {
+        if (at.size() == 1 && counts[sides.face_of[at[0]]] != 0) {
             times[e] = radius_on_edge(parts, radii, e, 0.5);
         }
-        const Point& p = parts.vertices[parts.edges[e][0]];
-        const Point& q = parts.vertices[parts.edges[e][1]];
+        const auto& [p, q] = parts.edges[e];
         for (const Index side : at) {
-            const auto time_at = [&](const Point& x) {
-                return arrival_in_face(burnt, parents[sides.face_of[side]], x).first.time;
+            if (counts[sides.face_of[side]] == 0) {
+                continue;
+            }
+            const Index face = parents[sides.face_of[side]];
+            const double middle =
+                arrival_in_face(burnt, face, midpoint(parts.vertices[p], parts.vertices[q])).first.time;
+            const auto time_at = [&](Index v) {
+                const Index sector = sector_in(burnt, face, v);
+                return sector == kNone ? arrival_in_face(burnt, face, parts.vertices[v]).first.time
+                                       : burnt.fire.sector_times[sector];
             };
-            times[e] = std::min({times[e], time_at(midpoint(p, q)), 0.5 * (time_at(p) + time_at(q))});
+            times[e] = std::min({times[e], middle, 0.5 * (time_at(p) + time_at(q))});
         }
     });
     return times;
