@@ -57,9 +57,8 @@ std::vector<std::uint8_t> vertices_on_seams(const MedialComplex& complex, const 
 // may.
 std::vector<double> scales_of_faces(const MedialComplex& complex, const IndexLists& faces_at,
                                     std::span<const double> scales, const std::vector<std::uint8_t>& is_on_seam) {
-    constexpr double kUnknown = 0.0;
     const std::vector<double> of_balls = mapped<double>(complex.faces.size(), [&](std::size_t f) {
-        double scale = kUnknown;
+        double scale = 0.0;
         for (const Index v : complex.faces[f]) {
             scale = is_on_seam[v] == 0 ? std::max(scale, scales[v]) : scale;
         }
@@ -67,14 +66,14 @@ std::vector<double> scales_of_faces(const MedialComplex& complex, const IndexLis
     });
     return mapped<double>(complex.faces.size(), [&](std::size_t f) {
         double scale = of_balls[f];
-        if (scale == kUnknown) {
+        if (scale < 1.0) {  // of no ball
             for (const Index e : complex.face_edges[f]) {
                 for (const Index other : faces_at[e].size() == 2 ? faces_at[e] : std::span<const Index>()) {
                     scale = std::max(scale, of_balls[other]);
                 }
             }
         }
-        if (scale == kUnknown) {
+        if (scale < 1.0) {
             for (const Index v : complex.faces[f]) {
                 scale = std::max(scale, scales[v]);
             }

@@ -673,8 +673,6 @@ class Assembly {
 
     // Smoothing must not lead out of the solid, nor far from its middle.
     void place_nodes() {
-        // Of the radius. Between balls of a union it is up to 0.15 less; half of it would be a stenosis at each fork.
-        constexpr double kMostLoss = 0.25;
         result_.nodes.resize(places_.size());
         result_.radii.resize(places_.size());
         for_each_index(
@@ -682,7 +680,9 @@ class Assembly {
             [&](std::size_t n) {
                 const auto& [target, source] = places_[n];
                 const Point& start = burnt_.complex.vertices[source];
-                const double least = (1.0 - kMostLoss) * burnt_.complex.radii[source];
+                // Between balls of a union it may be one and a half times the error of the radius less. With half of
+                // the radius lost there would be a stenosis at each fork.
+                const double least = (1.0 - 2.0 * kRadiusError) * burnt_.complex.radii[source];
                 for (double part = 1.0; part > 0.1; part *= 0.5) {
                     const Point p = start + part * (target - start);
                     if (const auto radius = radius_at_(p); radius && *radius >= least) {
