@@ -347,7 +347,7 @@ class WallRemesher {
         const Point two = vertices_[others[1]] - vertices_[v];
         const double cosine = dot(unit(one), unit(two));
         const auto is_border = [&](const Spoke& spoke) { return spoke.count == 1 && spoke.walls[0] == walls_[t]; };
-        if (cosine < -kSameDirection && triangles_at(others[0], others[1]).size() == 1 &&
+        if (cosine < kNegligible - 1.0 && triangles_at(others[0], others[1]).size() == 1 &&
             std::ranges::none_of(spokes, is_border)) {
             remove(t);
             return;
