@@ -23,7 +23,7 @@ namespace scaleaxis::inline v1 {
 SCALEAXIS_EXPORT std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution = {});
 
 /// The balls with all radii multiplied by a factor.
-/// \param factor > 0 \throws InvalidOption
+/// \param factor > 0
 SCALEAXIS_EXPORT std::vector<Ball> scaled(std::span<const Ball> balls, double factor);
 
 /// The balls in general position: every centre is moved in a direction that depends on the seed and the ball's position

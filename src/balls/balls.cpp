@@ -8,7 +8,6 @@
 #include <string>
 #include <utility>
 
-#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
@@ -99,7 +98,6 @@ std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution
 }
 
 std::vector<Ball> scaled(std::span<const Ball> balls, double factor) {
-    require(factor > 0.0 && std::isfinite(factor), "the factor of radii must be a positive number");
     std::vector<Ball> result(balls.begin(), balls.end());
     for (Ball& ball : result) {
         ball.radius *= factor;

@@ -22,24 +22,12 @@ from .errors import InvalidOption
 Seed = Annotated[int, range(2**64)]
 """Of the random choices."""
 
-#: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
-Length = tuple[float, bool] | None
-
 _COUNTS = range(-(2**31), 2**31)  # the library's counts and indices have 32 bits
 _CHECKED = (bool, str, bytes, os.PathLike, types.NoneType, collections.abc.Callable, np.ndarray)
 _LISTS = (collections.abc.Sequence, collections.abc.Iterable)
 RETIRED = ("features", "tight")
 
 _Function = TypeVar("_Function", bound=Callable[..., Any])
-
-
-def one_length(relative: float | None, absolute: float | None, name: str) -> Length:
-    """What one of two options that exclude each other says."""
-    if relative is not None and absolute is not None:
-        raise InvalidOption(f"{name} and {name.removesuffix('_')}_abs are the same option: leave one of them out")
-    if absolute is not None:
-        return absolute, True
-    return None if relative is None else (relative, False)
 
 
 def stood_for(given: Any) -> Any:

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats
-from ._options import Length, checked
+from ._options import checked
 from ._progress import Progress, Tell, telling
 from .adapt import adapted, as_balls, as_image, core_of_image, described, is_path
 from .data import Image, MedialComplex, Mesh, PointCloud, Samples
@@ -30,6 +30,9 @@ TriangleSolid = Literal["auto", "winding", "wrap", "thicken"]
 
 #: A label of an image: whole numbers as large as any array has them.
 Label = Annotated[int, range(-(2**63), 2**64)] | float
+
+#: A value, and whether it is a length; else it is a part of the diagonal of the bounding box.
+Length = tuple[float, bool] | None
 
 
 class InputOptions(TypedDict, total=False):

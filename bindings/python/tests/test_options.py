@@ -267,13 +267,3 @@ def test_warnings_come_once_for_the_line_of_the_user():
             call()
         assert told and {one.filename for one in told} == {__file__}
         assert len({str(one.message) for one in told}) == len(told)
-
-
-def test_a_part_of_the_diagonal_and_a_length_exclude_each_other() -> None:
-    balls = [[0.0, 0.0, 0.0, 1.0]]
-    with pytest.raises(scaleaxis.InvalidOption, match="delta and delta_abs are the same option"):
-        scaleaxis.mesh(balls, 0.1, delta_abs=0.1)
-    with pytest.raises(scaleaxis.InvalidOption, match="spacing and spacing_abs are the same option"):
-        scaleaxis.compare(balls, balls, 0.1, spacing_abs=0.1)
-    with pytest.raises(scaleaxis.InvalidOption, match="positive"):
-        scaleaxis.scaled(balls, -1.0)
