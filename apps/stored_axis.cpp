@@ -14,7 +14,6 @@
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/report.hpp"
-#include "scaleaxis/shrinking.hpp"
 #include "stopwatch.hpp"
 #include "terminal.hpp"
 

@@ -3,8 +3,10 @@
 /// Closed triangle meshes of known solids.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 #include <utility>
@@ -183,76 +185,82 @@ inline std::vector<Segment> convex_edges(const std::vector<std::array<double, 2>
     return edges;
 }
 
-/// The surface of boxes, each from a low corner to a high one, less that of others: one solid, with no two vertices
-/// alike.
-inline TriangleMesh blocks_mesh(const std::vector<std::array<Point, 2>>& boxes,
-                                const std::vector<std::array<Point, 2>>& holes = {}) {
-    std::array<std::vector<double>, 3> grid;
-    for (const auto* list : {&boxes, &holes}) {
-        for (const std::array<Point, 2>& box : *list) {
-            for (const Point& p : box) {
-                grid[0].push_back(p.x);
-                grid[1].push_back(p.y);
-                grid[2].push_back(p.z);
-            }
+inline bool is_in(const Point& p, const Point& low, const Point& high) {
+    return p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y && p.z < high.z;
+}
+
+/// The boundary of those boxes of a grid that are solid. Neighbours must not meet in an edge or a corner alone.
+inline TriangleMesh rectilinear(const std::array<std::vector<double>, 3>& planes,
+                                const std::function<bool(const Point& middle)>& is_solid) {
+    TriangleMesh mesh;
+    std::map<std::array<int, 3>, Index> ids;
+    const auto vertex = [&](const std::array<int, 3>& at) {
+        const auto [it, is_new] = ids.emplace(at, static_cast<Index>(mesh.vertices.size()));
+        if (is_new) {
+            mesh.vertices.push_back({planes[0][at[0]], planes[1][at[1]], planes[2][at[2]]});
         }
-    }
-    for (std::vector<double>& lines : grid) {
-        std::ranges::sort(lines);
-        lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-    }
-    const auto middle = [&](int axis, int i) { return 0.5 * (grid[axis][i] + grid[axis][i + 1]); };
-    const auto is_solid = [&](const std::array<int, 3>& cell) {
-        for (int axis = 0; axis < 3; ++axis) {
-            if (cell[axis] < 0 || cell[axis] + 1 >= static_cast<int>(grid[axis].size())) {
+        return it->second;
+    };
+    const auto is_solid_cell = [&](const std::array<int, 3>& cell) {
+        Point middle;
+        for (int k = 0; k < 3; ++k) {
+            if (cell[k] < 0 || cell[k] + 1 >= static_cast<int>(planes[k].size())) {
                 return false;
             }
+            (k == 0 ? middle.x : k == 1 ? middle.y : middle.z) = 0.5 * (planes[k][cell[k]] + planes[k][cell[k] + 1]);
         }
-        const Point p{middle(0, cell[0]), middle(1, cell[1]), middle(2, cell[2])};
-        const auto holds = [&](const std::array<Point, 2>& box) {
-            return p.x > box[0].x && p.y > box[0].y && p.z > box[0].z && p.x < box[1].x && p.y < box[1].y &&
-                   p.z < box[1].z;
-        };
-        return std::ranges::any_of(boxes, holds) && std::ranges::none_of(holes, holds);
-    };
-    TriangleMesh mesh;
-    std::map<std::array<int, 3>, Index> numbers;
-    const auto vertex = [&](const std::array<int, 3>& at) {
-        const auto [entry, is_new] = numbers.try_emplace(at, static_cast<Index>(mesh.vertices.size()));
-        if (is_new) {
-            mesh.vertices.push_back({grid[0][at[0]], grid[1][at[1]], grid[2][at[2]]});
-        }
-        return entry->second;
+        return is_solid(middle);
     };
     std::array<int, 3> cell{};
-    for (cell[0] = 0; cell[0] + 1 < static_cast<int>(grid[0].size()); ++cell[0]) {
-        for (cell[1] = 0; cell[1] + 1 < static_cast<int>(grid[1].size()); ++cell[1]) {
-            for (cell[2] = 0; cell[2] + 1 < static_cast<int>(grid[2].size()); ++cell[2]) {
-                for (int side = 0; side < 6 && is_solid(cell); ++side) {
-                    const int axis = side / 2;
-                    std::array<int, 3> beside = cell;
-                    beside[axis] += side % 2 == 0 ? -1 : 1;
-                    if (is_solid(beside)) {
-                        continue;
+    for (cell[0] = 0; cell[0] + 1 < static_cast<int>(planes[0].size()); ++cell[0]) {
+        for (cell[1] = 0; cell[1] + 1 < static_cast<int>(planes[1].size()); ++cell[1]) {
+            for (cell[2] = 0; cell[2] + 1 < static_cast<int>(planes[2].size()); ++cell[2]) {
+                for (int axis = 0; axis < 3 && is_solid_cell(cell); ++axis) {
+                    for (const int side : {0, 1}) {
+                        std::array<int, 3> neighbor = cell;
+                        neighbor[axis] += side == 0 ? -1 : 1;
+                        if (is_solid_cell(neighbor)) {
+                            continue;
+                        }
+                        const auto corner = [&](int i, int j) {
+                            std::array<int, 3> at = cell;
+                            at[axis] += side;
+                            at[(axis + 1) % 3] += i;
+                            at[(axis + 2) % 3] += j;
+                            return vertex(at);
+                        };
+                        const std::array quad{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
+                        mesh.triangles.push_back({quad[0], quad[side == 1 ? 1 : 2], quad[side == 1 ? 2 : 1]});
+                        mesh.triangles.push_back({quad[0], quad[side == 1 ? 2 : 3], quad[side == 1 ? 3 : 2]});
                     }
-                    std::array<Index, 4> corners{};
-                    for (int k = 0; k < 4; ++k) {
-                        std::array<int, 3> at = cell;
-                        at[axis] += side % 2;
-                        at[(axis + 1) % 3] += k == 1 || k == 2 ? 1 : 0;
-                        at[(axis + 2) % 3] += k >= 2 ? 1 : 0;
-                        corners[k] = vertex(at);
-                    }
-                    if (side % 2 == 0) {
-                        std::swap(corners[1], corners[3]);
-                    }
-                    mesh.triangles.push_back({corners[0], corners[1], corners[2]});
-                    mesh.triangles.push_back({corners[0], corners[2], corners[3]});
                 }
             }
         }
     }
     return mesh;
+}
+
+/// The same of boxes, each from a low corner to a high one, less others.
+inline TriangleMesh blocks_mesh(const std::vector<std::array<Point, 2>>& boxes,
+                                const std::vector<std::array<Point, 2>>& holes = {}) {
+    std::array<std::vector<double>, 3> planes;
+    for (const auto* list : {&boxes, &holes}) {
+        for (const std::array<Point, 2>& box : *list) {
+            for (const Point& p : box) {
+                planes[0].push_back(p.x);
+                planes[1].push_back(p.y);
+                planes[2].push_back(p.z);
+            }
+        }
+    }
+    for (std::vector<double>& lines : planes) {
+        std::ranges::sort(lines);
+        lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+    }
+    return rectilinear(planes, [&](const Point& p) {
+        const auto holds = [&](const std::array<Point, 2>& box) { return is_in(p, box[0], box[1]); };
+        return std::ranges::any_of(boxes, holds) && std::ranges::none_of(holes, holds);
+    });
 }
 
 inline TriangleMesh moved(TriangleMesh mesh, const Point& by, double scale = 1.0) {

@@ -23,63 +23,10 @@ namespace scaleaxis {
 namespace {
 
 using test::box_mesh;
+using test::is_in;
+using test::rectilinear;
 using test::revolved_mesh;
 using test::sphere_mesh;
-
-// The boundary of those boxes of a grid that are solid. Neighbours must not meet in an edge or a corner alone.
-TriangleMesh rectilinear(const std::array<std::vector<double>, 3>& planes,
-                         const std::function<bool(const Point& middle)>& is_solid) {
-    TriangleMesh mesh;
-    std::map<std::array<int, 3>, Index> ids;
-    const auto vertex = [&](const std::array<int, 3>& at) {
-        const auto [it, is_new] = ids.emplace(at, static_cast<Index>(mesh.vertices.size()));
-        if (is_new) {
-            mesh.vertices.push_back({planes[0][at[0]], planes[1][at[1]], planes[2][at[2]]});
-        }
-        return it->second;
-    };
-    const auto is_solid_cell = [&](const std::array<int, 3>& cell) {
-        Point middle;
-        for (int k = 0; k < 3; ++k) {
-            if (cell[k] < 0 || cell[k] + 1 >= static_cast<int>(planes[k].size())) {
-                return false;
-            }
-            (k == 0 ? middle.x : k == 1 ? middle.y : middle.z) = 0.5 * (planes[k][cell[k]] + planes[k][cell[k] + 1]);
-        }
-        return is_solid(middle);
-    };
-    std::array<int, 3> cell{};
-    for (cell[0] = 0; cell[0] + 1 < static_cast<int>(planes[0].size()); ++cell[0]) {
-        for (cell[1] = 0; cell[1] + 1 < static_cast<int>(planes[1].size()); ++cell[1]) {
-            for (cell[2] = 0; cell[2] + 1 < static_cast<int>(planes[2].size()); ++cell[2]) {
-                for (int axis = 0; axis < 3 && is_solid_cell(cell); ++axis) {
-                    for (const int side : {0, 1}) {
-                        std::array<int, 3> neighbor = cell;
-                        neighbor[axis] += side == 0 ? -1 : 1;
-                        if (is_solid_cell(neighbor)) {
-                            continue;
-                        }
-                        const auto corner = [&](int i, int j) {
-                            std::array<int, 3> at = cell;
-                            at[axis] += side;
-                            at[(axis + 1) % 3] += i;
-                            at[(axis + 2) % 3] += j;
-                            return vertex(at);
-                        };
-                        const std::array quad{corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)};
-                        mesh.triangles.push_back({quad[0], quad[side == 1 ? 1 : 2], quad[side == 1 ? 2 : 1]});
-                        mesh.triangles.push_back({quad[0], quad[side == 1 ? 2 : 3], quad[side == 1 ? 3 : 2]});
-                    }
-                }
-            }
-        }
-    }
-    return mesh;
-}
-
-bool is_in(const Point& p, const Point& low, const Point& high) {
-    return p.x > low.x && p.y > low.y && p.z > low.z && p.x < high.x && p.y < high.y && p.z < high.z;
-}
 
 // Turned, so that no face is parallel to a plane of coordinates.
 TriangleMesh turned(TriangleMesh mesh) {

@@ -314,16 +314,30 @@ IndexLists faces_at_vertices(const MedialComplex& complex) {
     });
 }
 
-std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex) {
+namespace {
+
+// 1 for the vertices of edges with such a number of faces, else 0.
+template <class IsWanted>
+std::vector<std::uint8_t> vertices_of_edges(const MedialComplex& complex, const IsWanted& is_wanted) {
     const std::vector<Index> faces_at = face_counts(complex);
     std::vector<std::uint8_t> result(complex.vertices.size());
     for (std::size_t e = 0; e < faces_at.size(); ++e) {
-        if (faces_at[e] == 1) {
+        if (is_wanted(faces_at[e])) {
             result[complex.edges[e][0]] = 1;
             result[complex.edges[e][1]] = 1;
         }
     }
     return result;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex) {
+    return vertices_of_edges(complex, [](Index faces) { return faces == 1; });
+}
+
+std::vector<std::uint8_t> vertices_at_seams(const MedialComplex& complex) {
+    return vertices_of_edges(complex, [](Index faces) { return faces > 2; });
 }
 
 IndexLists faces_of_sheets(const MedialComplex& complex) {

@@ -60,6 +60,9 @@ IndexLists faces_at_vertices(const MedialComplex& complex);
 /// 1 for the vertices of edges with one face, else 0.
 std::vector<std::uint8_t> vertices_at_borders(const MedialComplex& complex);
 
+/// 1 for the vertices of seams, which are edges with more than two faces, else 0.
+std::vector<std::uint8_t> vertices_at_seams(const MedialComplex& complex);
+
 /// The faces of each sheet.
 IndexLists faces_of_sheets(const MedialComplex& complex);
 

@@ -25,6 +25,9 @@ inline constexpr double kFileRounding = 1e-6;
 /// percent. A tenth of it costs searches more steps for digits that nobody reads.
 inline constexpr double kNegligible = 1e-3;
 
+/// Up to here all whole numbers are floats: labels beyond it are not told apart.
+inline constexpr float kMostExactFloat = 0x1p24F;
+
 /// The larger of two in the middle. \param values not empty
 inline double median(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

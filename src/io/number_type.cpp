@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/bytes.hpp"
+#include "base/numbers.hpp"
 #include "io/text_reader.hpp"
 
 namespace scaleaxis::io {
@@ -82,9 +83,8 @@ double number_at(const char* from, NumberType type, std::endian order) {
 }
 
 float as_float(double value) {
-    constexpr float kMostExact = 1 << 24;
     const auto rounded = static_cast<float>(value);
-    const bool is_merged = std::abs(rounded) == kMostExact && std::abs(value) > double{kMostExact};
+    const bool is_merged = std::abs(rounded) == kMostExactFloat && std::abs(value) > double{kMostExactFloat};
     return is_merged ? std::nextafter(rounded, 2.0F * rounded) : rounded;
 }
 

@@ -11,6 +11,7 @@
 
 #include "axis/complex.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/progress.hpp"
 #include "base/text.hpp"
 #include "pipeline/run.hpp"
@@ -151,14 +152,12 @@ std::string in_words(const std::vector<LabelCount>& labels) {
                             });
 }
 
-constexpr float kMostChosenLabel = 0x1p24F;  // beyond it not all whole numbers are floats
-
 /// What can be chosen of an image: its labels, or values that are none.
 std::string labels_in_words(const Image& image) {
     if (const std::vector<LabelCount> counts = report_of(image).labels; !counts.empty()) {
         return in_words(counts);
     }
-    if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostChosenLabel; })) {
+    if (std::ranges::any_of(image.values, [](float value) { return std::abs(value) > kMostExactFloat; })) {
         return "labels beyond 2^24 cannot be told apart in single precision; number them anew, as by numpy.unique "
                "with return_inverse, and save the image again";
     }
@@ -188,7 +187,7 @@ std::vector<float> chosen_labels(const Image& image, const LoadOptions& options)
         labels.push_back(found->label);
     }
     for (const float label : labels) {
-        if (std::abs(label) > kMostChosenLabel || std::ranges::find(image.values, label) == image.values.end()) {
+        if (std::abs(label) > kMostExactFloat || std::ranges::find(image.values, label) == image.values.end()) {
             Words text;
             text << "no voxel has the label " << label << ": " << labels_in_words(image);
             throw UnusableInput(text.str());

@@ -40,23 +40,11 @@ struct Earliest {
     std::vector<double> faces;
 };
 
-// Vertices whose balls may stay for the sake of one sheet, and say nothing of the others.
-std::vector<std::uint8_t> vertices_on_seams(const MedialComplex& complex, const IndexLists& faces_at) {
-    std::vector<std::uint8_t> result(complex.vertices.size());
-    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-        if (faces_at[e].size() > 2) {
-            for (const Index v : complex.edges[e]) {
-                result[v] = 1;
-            }
-        }
-    }
-    return result;
-}
-
-// Faces may vanish when all their balls off the seams have; one without such a ball when those beside it in its sheet
-// may.
-std::vector<double> scales_of_faces(const MedialComplex& complex, const IndexLists& faces_at,
-                                    std::span<const double> scales, const std::vector<std::uint8_t>& is_on_seam) {
+// Faces may vanish when all their balls off the seams have: a ball on a seam may stay for the sake of one sheet, and
+// says nothing of the others. A face without such a ball may when those beside it in its sheet may.
+std::vector<double> scales_of_faces(const MedialComplex& complex, std::span<const double> scales,
+                                    const std::vector<std::uint8_t>& is_on_seam) {
+    const IndexLists faces_at = faces_at_edges(complex);
     const std::vector<double> of_balls = mapped<double>(complex.faces.size(), [&](std::size_t f) {
         double scale = 0.0;
         for (const Index v : complex.faces[f]) {
@@ -274,10 +262,9 @@ Filtration filtration(MedialComplex complex, const FiltrationOptions& options, c
         result.largest_scale = options.largest_scale;
         result.ball_scales = vanishing_scales(balls_at_vertices(result.complex), options);
         report(execution, kFiltrationStage, 0.9);
-        const IndexLists faces_at = faces_at_edges(result.complex);
-        const std::vector<std::uint8_t> is_on_seam = vertices_on_seams(result.complex, faces_at);
+        const std::vector<std::uint8_t> is_on_seam = vertices_at_seams(result.complex);
         Earliest earliest{closed(result.complex, result.ball_scales, is_on_seam), {}};
-        earliest.faces = scales_of_faces(result.complex, faces_at, earliest.vertices, is_on_seam);
+        earliest.faces = scales_of_faces(result.complex, earliest.vertices, is_on_seam);
         collapse_by_scale(result, earliest);
         report(execution, kFiltrationStage, 1.0);
         return result;

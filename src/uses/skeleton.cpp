@@ -80,7 +80,7 @@ Burnt burnt_sheets(const MedialComplex& given) {
     }
     std::vector<Index> faces(complex.faces.size());
     std::iota(faces.begin(), faces.end(), 0);
-    result.edge_times = edge_times(burnt, complex, radii, faces, std::vector<std::uint8_t>(faces.size(), 1));
+    result.edge_times = edge_times(burnt, complex, sides, radii, faces, std::vector<std::uint8_t>(faces.size(), 1));
     result.complex = std::move(burnt.complex);
     return result;
 }

@@ -241,10 +241,7 @@ class Division {
         cuts_[edge] = add_vertex(result_.complex, {a + t * (b - a), radius / complex_.scale},
                                  origin_between(complex_.vertex_origins[p], complex_.vertex_origins[q]));
         result_.radii.push_back(radius);
-        const auto between = [&](const std::vector<double>& values) {
-            return (1.0 - t) * values[sector_p] + t * values[sector_q];
-        };
-        result_.vertex_paths.push_back(between(fire_.sector_paths));
+        result_.vertex_paths.push_back((1.0 - t) * fire_.sector_paths[sector_p] + t * fire_.sector_paths[sector_q]);
     }
 
     void add_part(Index face, std::span<const Index> corners, bool is_low) {
@@ -321,9 +318,8 @@ class Division {
 
 // A sheet that stays along most of a seam stays along all of it, as far as the others there stay: else the seam would
 // open, and they become one.
-void keep_along_seams(Divided& divided) {
+void keep_along_seams(Divided& divided, const Sides& sides) {
     const MedialComplex& complex = divided.complex;
-    const Sides sides = sides_of(complex);
     const Sectors sectors = sectors_of(complex, sides);
     const auto is_low = [&](Index side) { return divided.is_low[sides.face_of[side]] != 0; };
     const auto for_each_side_that_opens = [&](const auto& visit) {
@@ -616,8 +612,10 @@ CleanedComplex collapsed(const MedialComplex& given, const CleanOptions& options
     std::vector<double> depths = opening.depths();
     snap(complex, sides, sectors, depths);
     Divided divided = Division(burnt, depths).run();
-    keep_along_seams(divided);
-    divided.edge_times = edge_times(burnt, divided.complex, divided.radii, divided.parents, divided.is_low);
+    const Sides sides_of_parts = sides_of(divided.complex);
+    keep_along_seams(divided, sides_of_parts);
+    divided.edge_times =
+        edge_times(burnt, divided.complex, sides_of_parts, divided.radii, divided.parents, divided.is_low);
     report(execution, kCleaningStage, 0.8);
     Remainder remainder(divided.complex);
     FaceCollapse(divided, options.thickness, remainder).run();

@@ -4,12 +4,10 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "axis/edit/collapse.hpp"
 #include "base/numbers.hpp"
 #include "scaleaxis/medial_axis.hpp"
 

@@ -167,9 +167,9 @@ double radius_on_edge(const MedialComplex& complex, const std::vector<double>& r
                : radius_between(radii[p], radii[q], squared_distance(complex.vertices[p], complex.vertices[q]), t);
 }
 
-std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const std::vector<double>& radii,
-                               std::span<const Index> parents, std::span<const std::uint8_t> counts) {
-    const Sides sides = sides_of(parts);
+std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const Sides& sides,
+                               const std::vector<double>& radii, std::span<const Index> parents,
+                               std::span<const std::uint8_t> counts) {
     std::vector<double> times(parts.edges.size(), kInfinity);
     for_each_index(static_cast<Index>(times.size()), [&](Index e) {
         const std::span<const Index> at = sides.of_edge[e];

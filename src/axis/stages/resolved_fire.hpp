@@ -45,11 +45,12 @@ struct RidgeCrossing {
 
 /// When the edges of faces burn: in the middle, which may be a dip of the union; or at the ends, where fires from there
 /// meet in between. Faces collapse in this order of their free edges, so that what is left has burnt last.
-/// \param parts a complex whose faces are parts of those that burnt \param radii of its vertices
+/// \param parts a complex whose faces are parts of those that burnt \param sides of it \param radii of its vertices
 /// \param parents the face of which each of its faces is a part
 /// \param counts faces whose edges are looked at; those of others have infinite times
-std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const std::vector<double>& radii,
-                               std::span<const Index> parents, std::span<const std::uint8_t> counts);
+std::vector<double> edge_times(const BurntComplex& burnt, const MedialComplex& parts, const Sides& sides,
+                               const std::vector<double>& radii, std::span<const Index> parents,
+                               std::span<const std::uint8_t> counts);
 
 /// How often what is cut is looked at again.
 inline constexpr int kMostCutRounds = 2;  // a third hardly finds more

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "base/vectors.hpp"
 #include "io/formats.hpp"
@@ -172,7 +173,7 @@ struct Segment {
 };
 
 std::vector<Segment> segments_of(const ImageHead& head) {
-    constexpr std::int64_t kMostLabel = 1 << 24;  // whole numbers that a float holds
+    constexpr auto kMostLabel = static_cast<std::int64_t>(kMostExactFloat);
     std::vector<Segment> segments;
     for (std::size_t i = 0;; ++i) {
         const std::string key = "Segment" + std::to_string(i);

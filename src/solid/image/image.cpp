@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/text.hpp"
@@ -32,7 +33,6 @@ namespace {
 
 constexpr std::string_view kMaskStage = "mask";
 constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
-constexpr float kMostLabel = 1 << 24;        // beyond it floats are not all integers
 constexpr std::size_t kMostLabels = 65535;
 constexpr float kIso = 0.5F;
 constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
@@ -214,7 +214,7 @@ bool count_labels(const ImageView& image, Index k, LabelCounts& counts) {
             if (value == 0.0F) {
                 continue;
             }
-            if (value != std::floor(value) || std::abs(value) > kMostLabel || counts.size() > kMostLabels) {
+            if (value != std::floor(value) || std::abs(value) > kMostExactFloat || counts.size() > kMostLabels) {
                 return false;
             }
             add(counts, {value, i - begin, {begin, j, k}, {i - 1, j, k}});
