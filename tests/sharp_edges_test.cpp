@@ -398,6 +398,25 @@ TEST(SharpEdgesSweep, OfNarrowTeethLeaveNoSpecksInMeshes) {
     EXPECT_EQ(mesh.tolerance, axis.tolerance);
 }
 
+// However fine their mesh is: facets wider than the tolerance are plane across from the edge.
+TEST(SharpEdges, OfRoundFacesAreReached) {
+    constexpr int kParts = 150;
+    std::vector<std::array<double, 2>> lens;  // of two arcs of radius 10
+    for (const double side : {1.0, -1.0}) {
+        for (int k = 0; k < kParts; ++k) {
+            const double turn = (2.0 * k / kParts - 1.0) * std::acos(0.6);
+            lens.push_back({side * (10.0 * std::cos(turn) - 6.0), side * 10.0 * std::sin(turn)});
+        }
+    }
+    const std::unique_ptr<Solid> solid = mesh_solid(prism(lens, 30.0));
+    for (const double delta : {0.02, 0.01}) {
+        const AxisAtScale axis = axis_of(*solid, 1.1, delta);
+        EXPECT_EQ(axis.complex.sheets, 5) << delta;
+        EXPECT_NEAR(axis.sharp_statistics->length, axis.sharp_statistics->known, 1e-3 * axis.sharp_statistics->known);
+        EXPECT_NEAR(axis.sharp_statistics->known, length_of(convex_edges(lens, 0.0)) + 60.0, 0.1) << delta;
+    }
+}
+
 TEST(SharpEdges, OfHolesAreClosedLines) {
     // A ring: its four rims have no corners.
     constexpr int kSegments = 64;

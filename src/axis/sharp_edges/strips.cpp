@@ -35,9 +35,8 @@ namespace {
 constexpr double kInnerCost = 3.0;  // of a way inside a sheet, which leaves a part of it beyond, beside its border
 constexpr double kOffCost =
     8.0;  // of a way off the bisector of the line, to other sheets, beside one away from the line
-constexpr double kFootReach = 2.0;    // of the way to the nearest vertex: how far the foot of a corner may be
-constexpr double kSimilarFeet = 1.1;  // so many times the least distance in radii: then the nearest one counts
-constexpr int kPartsOfLoop = 3;       // the shortest way below a third of a loop does not lead around the other side
+constexpr double kFootReach = 2.0;  // of the way to the nearest vertex: how far the foot of a corner may be
+constexpr int kPartsOfLoop = 3;     // the shortest way below a third of a loop does not lead around the other side
 
 // Three vertices; places on the line are -1 - place.
 using Triangle = std::array<Index, 3>;
@@ -168,8 +167,10 @@ class Strips {
             near.emplace_back(distance(complex_.vertices[v], place), v);
             best = std::min(best, near.back().first / complex_.radii[v]);
         });
-        std::erase_if(near,
-                      [&](const auto& foot) { return foot.first > kSimilarFeet * best * complex_.radii[foot.second]; });
+        // Of balls that are as large, but for the errors of their radii, the nearest one.
+        std::erase_if(near, [&](const auto& foot) {
+            return foot.first > (1.0 + kRadiusError) * best * complex_.radii[foot.second];
+        });
         return {std::ranges::min(near).second};
     }
 
