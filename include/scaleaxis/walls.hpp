@@ -49,7 +49,7 @@ struct Finding {
 
 struct Walls {
     std::vector<Finding> findings;  ///< thin walls, thick walls, gaps, the worst of each kind first
-    /// A value that misses its limit by no more than this is no finding: the accuracy of values on a mesh.
+    /// Of its limit: a value that misses it by no more is no finding. The accuracy of values on a mesh.
     double tolerance = 0.0;
 
     TriangleMesh surface;      ///< the one given, with more vertices where these are needed

@@ -33,7 +33,7 @@ namespace {
 
 constexpr std::string_view kWallsStage = "walls";
 
-// Accuracy of values, as a part of a limit, which `uphill` and rims leave out.
+// Of a value: its accuracy, which `uphill` and rims leave out.
 constexpr double kValueTolerance = 3e-3;
 
 // Balls are looked for up to this multiple of a limit of thin walls and gaps, so that what is thinner shows beside its
@@ -95,10 +95,7 @@ class WallSearch {
           diagonal_(solid.bounds().diagonal()),
           slope_(cosine_of_degrees(0.5 * options.angle)) {
         walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_);
-        walls_.tolerance = kFileRounding * diagonal_;
-        for (const std::optional<double>& limit : {options.min_wall, options.max_wall, options.min_gap}) {
-            walls_.tolerance = std::max(walls_.tolerance, kValueTolerance * limit.value_or(0.0));
-        }
+        walls_.tolerance = kValueTolerance;
         if (options.min_wall || options.max_wall) {
             walls_.wall_cap = std::max(kCapLimits * options.min_wall.value_or(0.0),
                                        (1.0 + kSmallPart) * options.max_wall.value_or(0.0));
@@ -188,6 +185,8 @@ class WallSearch {
         }
     }
 
+    double accuracy_of(double value) const { return std::max(kFileRounding * diagonal_, kValueTolerance * value); }
+
     // Vertices with no lower one beside them, the lowest first. \param sign -1: with no higher one, the highest first
     // \param rise part by which another beside them must be higher
     template <class Wanted>
@@ -199,7 +198,7 @@ class WallSearch {
             for (int k = 0; k < 3; ++k) {
                 const Index a = triangle[k];
                 for (const Index b : {triangle[(k + 1) % 3], triangle[(k + 2) % 3]}) {
-                    if (sign * side.value(b) < sign * side.value(a) - walls_.tolerance) {
+                    if (sign * side.value(b) < sign * side.value(a) - accuracy_of(side.value(a))) {
                         has_lower[a] = 1;
                     }
                     if (sign * side.value(b) >= sign * side.value(a) + rise * side.value(a)) {
@@ -220,7 +219,7 @@ class WallSearch {
         if (!side.limit) {
             return;
         }
-        const double limit = *side.limit - walls_.tolerance;
+        const double limit = *side.limit - accuracy_of(*side.limit);
         const std::vector<Index> beside = lowest_vertices(side, 1.0, kSmallPart, [&](Index v) {
             return side.value(v) >= limit && side.value(v) < kCapLimits * *side.limit;
         });
@@ -316,7 +315,7 @@ class WallSearch {
         const bool is_thick = kind == FindingKind::kThickWall;
         const double sign = is_thick ? -1.0 : 1.0;
         const auto values = each_of<double>(side.balls, [&](const Ball& b) { return sign * 2.0 * b.radius; });
-        const double strict = sign * limit - walls_.tolerance;
+        const double strict = sign * limit - accuracy_of(limit);
         const ThinRegions regions = thin_regions(walls_.surface, values, strict);
         DisjointSets joined(regions.regions.size());
         join_sides(side, regions.vertex_regions, joined);
@@ -434,7 +433,8 @@ class WallSearch {
     // the balls beside a rim.
     std::vector<Index> chosen_starts(const SurfaceSide& side, const std::vector<Index>& lowest) const {
         std::vector<Index> chosen(lowest.begin(), lowest.begin() + std::min(std::ssize(lowest), kMostDescents));
-        const double as_low = side.value(lowest.front()) + walls_.tolerance;
+        const double least = side.value(lowest.front());
+        const double as_low = least + accuracy_of(least);
         const auto end = std::ranges::upper_bound(lowest, as_low, {}, [&](Index v) { return side.value(v); });
         const auto count = std::min(end - lowest.begin() - std::ssize(chosen), kMostDescents);
         if (count > 0) {
@@ -449,7 +449,7 @@ class WallSearch {
         const double least = std::ranges::min(balls, {}, &Ball::radius).radius;
         Ball result{{}, -1.0};
         for (const Ball& ball : balls) {
-            if (ball.radius <= least + 0.5 * walls_.tolerance && ball.radius > result.radius) {
+            if (ball.radius <= least + 0.5 * accuracy_of(2.0 * least) && ball.radius > result.radius) {
                 result = ball;
             }
         }
