@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -107,6 +108,28 @@ TEST(Measures, ComponentsAndPartsAddUpToTheWhole) {
         EXPECT_FALSE(row.volume);
         EXPECT_EQ(row.topology.components, 1);
     }
+}
+
+// Balls have no branch, and the sheet around a void none but what leads to it: they are parts, too.
+TEST(Measures, OfPartsWithoutBranchesAreThere) {
+    const TriangleMesh ball = sphere_mesh({0, 0, 0}, 1.0, 3);
+    const TriangleMesh shell =
+        moved(together({sphere_mesh({0, 0, 0}, 1.0, 3), inside_out(sphere_mesh({0, 0, 0}, 0.5, 3))}), Point{4, 0, 0});
+    const TriangleMesh bar = moved(box_mesh({0, 0, 0}, {0.4, 0.4, 3}, 6), Point{8, 0, 0});
+    const Measured solid = measured(together({ball, shell, bar}), 0.01);
+    const Measures whole = rows_of(solid, MeasuredPieces::kWhole)[0];
+    const std::vector<Measures> parts = rows_of(solid, MeasuredPieces::kParts);
+    ASSERT_EQ(parts.size(), 3U);
+    double area = 0.0;
+    std::int64_t voids = 0;
+    for (const Measures& row : parts) {
+        area += row.thickness.area;
+        voids += *row.topology.voids;
+        EXPECT_EQ(row.topology.components, 1);
+        EXPECT_EQ(row.topology.tunnels, 0);
+    }
+    EXPECT_NEAR(area, whole.thickness.area, 1e-6 * whole.thickness.area);
+    EXPECT_EQ(voids, 1);
 }
 
 TEST(Measures, TakeThicknessAsGiven) {

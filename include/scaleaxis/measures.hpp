@@ -21,7 +21,8 @@ namespace scaleaxis::inline v1 {
 enum class MeasuredPieces {
     kWhole,
     kComponents,  ///< of the skeleton, in its order
-    kParts,       ///< the parts of the solid that belong to the branches of its skeleton, in their order
+    kParts,       ///< those of the solid that belong to the branches of its skeleton, in their order; then those that
+                  ///< belong to none: balls, and sheets that no face could leave without changing the topology
 };
 
 /// Lengths, areas and volumes are in units of the solid.
@@ -47,7 +48,7 @@ struct MeasureOptions {
 /// belongs to several counts for that of its first corner.
 /// \param axis cleaned \param skeleton of the axis \param surface the boundary of the solid, closed; its vertices are
 ///     where thickness is asked: see `with_short_edges`
-/// \returns one row; or one for each component, or branch. A piece that no vertex of the surface belongs to has an area
+/// \returns one row; or one for each component, or part. A piece that no vertex of the surface belongs to has an area
 ///     and a thickness of 0.
 /// \throws InvalidOption, UnusableInput (see `Thickness`, `nearest_nodes`), Cancelled
 SCALEAXIS_EXPORT std::vector<Measures> measures(const MedialComplex& axis, const Skeleton& skeleton,

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "axis/complex.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
 #include "base/grouped.hpp"
 #include "base/progress.hpp"
@@ -23,6 +24,26 @@ struct Pieces {
     std::vector<Index> of_node;  // `kNone`: none
 };
 
+// Branches, and after them what is connected of the nodes that lie on none: single balls, and sheets.
+Pieces parts_of(const Skeleton& skeleton) {
+    const std::vector<Index>& branches = skeleton.node_branches;
+    Pieces parts{static_cast<Index>(skeleton.branches.size()), branches};
+    DisjointSets sets(branches.size());
+    for (const auto& [a, b] : skeleton.edges) {
+        if (branches[a] == kNone && branches[b] == kNone) {
+            sets.join(a, b);
+        }
+    }
+    for (Index n = 0; n < static_cast<Index>(branches.size()); ++n) {
+        if (branches[n] == kNone) {
+            Index& part = parts.of_node[sets.find(n)];
+            part = part == kNone ? parts.count++ : part;
+            parts.of_node[n] = part;
+        }
+    }
+    return parts;
+}
+
 Pieces pieces_of(const Skeleton& skeleton, MeasuredPieces kind) {
     switch (kind) {
         case MeasuredPieces::kComponents: {
@@ -30,7 +51,7 @@ Pieces pieces_of(const Skeleton& skeleton, MeasuredPieces kind) {
             return {components.empty() ? 0 : std::ranges::max(components) + 1, components};
         }
         case MeasuredPieces::kParts:
-            return {static_cast<Index>(skeleton.branches.size()), skeleton.node_branches};
+            return parts_of(skeleton);
         default:
             return {1, std::vector<Index>(skeleton.nodes.size(), 0)};
     }
@@ -94,13 +115,13 @@ SurfaceValues values_on(const PieceOfSurface& piece, std::span<const double> val
     return result;
 }
 
-// The part of a skeleton that consists of some nodes, as a complex; of a single branch with its ends.
+// The part of a skeleton that consists of some nodes, as a complex; a single branch with its ends.
 MedialComplex part_of(const Skeleton& skeleton, const MedialComplex& complex, const Pieces& pieces, Index piece,
                       MeasuredPieces kind) {
     std::vector<std::uint8_t> keeps_vertex(complex.vertices.size());
     std::vector<std::uint8_t> keeps_edge(complex.edges.size());
     std::vector<std::uint8_t> keeps_face(complex.faces.size());
-    if (kind == MeasuredPieces::kParts) {
+    if (kind == MeasuredPieces::kParts && piece < static_cast<Index>(skeleton.branches.size())) {
         const std::span<const Index> branch = skeleton.branches[piece];
         for (std::size_t k = 0; k < branch.size(); ++k) {
             keeps_vertex[branch[k]] = 1;
@@ -114,11 +135,21 @@ MedialComplex part_of(const Skeleton& skeleton, const MedialComplex& complex, co
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         keeps_vertex[v] = pieces.of_node[v] == piece ? 1 : 0;
     }
+    // With the nodes at which branches end on a sheet, which are theirs.
+    const auto is_of_piece = [&](std::span<const Index> nodes) {
+        return std::ranges::any_of(nodes, [&](Index n) { return pieces.of_node[n] == piece; });
+    };
     for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-        keeps_edge[e] = keeps_vertex[complex.edges[e][0]];
+        if (is_of_piece(complex.edges[e])) {
+            keeps_edge[e] = 1;
+            std::ranges::for_each(complex.edges[e], [&](Index v) { keeps_vertex[v] = 1; });
+        }
     }
     for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        keeps_face[f] = keeps_vertex[complex.faces[f][0]];
+        if (is_of_piece(complex.faces[f])) {
+            keeps_face[f] = 1;
+            std::ranges::for_each(complex.face_edges[f], [&](Index e) { keeps_edge[e] = 1; });
+        }
     }
     return subcomplex(complex, keeps_vertex, keeps_edge, keeps_face);
 }
@@ -136,7 +167,7 @@ void add_skeleton(const Skeleton& skeleton, const Pieces& pieces, MeasuredPieces
         }
         row.ends = static_cast<Index>(std::ranges::count(degree, 1));
     }
-    if (kind != MeasuredPieces::kParts) {  // within a branch none meet
+    if (kind != MeasuredPieces::kParts) {  // within a part none meet
         const std::vector<Index> degree = branch_degrees(skeleton);
         for (std::size_t n = 0; n < degree.size(); ++n) {
             rows[pieces.of_node[n]].junctions += degree[n] > 2 ? 1 : 0;

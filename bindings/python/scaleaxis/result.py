@@ -520,7 +520,7 @@ class Skeleton:
         progress: Progress = None,
     ) -> list[dict[str, Any]]:
         """Rows of a table: volume, area, thickness, sheets, branches and topology of the solid, of its components, or
-        of its parts, what belongs to each branch. `pandas.DataFrame` takes them.
+        of its parts, what belongs to each branch and then to what has none. `pandas.DataFrame` takes them.
 
         vertices, faces: the closed surface of the solid, two arrays or one mesh; thickness is asked at its vertices. What
             it has twice, as where parts overlap, counts twice: take `axis.mesh()` instead.
