@@ -2074,6 +2074,17 @@ TEST_F(CommandLine, SizesGoToFilesOfMeshers) {
     EXPECT_TRUE(content(folder_ / "a.msh").starts_with("$MeshFormat\n4.1 0 8\n"));
     EXPECT_NE(content(folder_ / "a.mesh").find("\nTriangles\n"), std::string::npos);
 
+    // The same places in both, far from the origin, too.
+    scaleaxis::write_mesh(folder_ / "far.off", scaleaxis::test::box_mesh({1e6, 0, 0}, {1e6 + 5, 3, 0.5}));
+    for (const std::string name : {"far.pos", "far.msh"}) {
+        ASSERT_EQ(run({"sizes", "far.off", "--max-size", "1", "-o", name, "-q"}).status, 0);
+    }
+    const std::string nodes = content(folder_ / "far.msh");
+    const std::size_t end = nodes.find("\n$EndNodes");
+    std::string place = nodes.substr(nodes.rfind('\n', end - 1) + 1, end - nodes.rfind('\n', end - 1) - 1);
+    std::ranges::replace(place, ' ', ',');
+    EXPECT_NE(content(folder_ / "far.pos").find(place), std::string::npos) << place;
+
     // Of a mesh that is there already: at the vertices of the file before.
     ASSERT_EQ(
         run({"sizes", "plate.off", "--elements-across", "2", "--max-size", "1", "--at", "a.mesh", "-o", "b.sol", "-q"})

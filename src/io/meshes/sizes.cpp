@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kTetrahedronOfGmsh = 4;
 
-// Each vertex of a view stands there some 25 times: seven digits halve the file.
+// Each vertex of a view stands there some 25 times: seven digits of its size make the file smaller.
 float single(double value) { return static_cast<float>(value); }
 
 void write_place(OutputFile& out, const Point& p) { out.text(p.x, ' ', p.y, ' ', p.z); }
@@ -32,7 +32,7 @@ void write_pos_sizes(OutputFile& out, const SizeField& field, const Execution& e
         out.text("SS");
         for (const Index v : tetrahedron) {
             const Point& p = mesh.vertices[v];
-            out.text(separator, single(p.x), ',', single(p.y), ',', single(p.z));
+            out.text(separator, p.x, ',', p.y, ',', p.z);
             separator = ',';
         }
         separator = '{';
