@@ -330,11 +330,31 @@ TEST(Points, OrientsNormalsOutward) {
             normal = -3.0 * normal;
         }
         const PreparedCloud flipped = prepare(inward);
-        EXPECT_TRUE(flipped.report.are_normals_flipped);
+        EXPECT_EQ(flipped.report.flipped_normals, flipped.report.kept());
         EXPECT_EQ(flipped.report.parts, 0);
         EXPECT_EQ(flipped.report.warnings().size(), 1U);
         for (std::size_t i = 0; i < given.points.size(); ++i) {
             EXPECT_LT(distance(flipped.cloud.normals[i], given.normals[i]), 1e-12);
+        }
+    }
+}
+
+// Two balls, one of which faces inward; and one in the other, which is a void, whatever its normals say.
+TEST(Points, TurnsClosedPartsThatFaceTheWrongWay) {
+    const PointCloud ball = cloud_of(ball_solid(1.0), 0.1);
+    for (const auto& [place, sign] : {std::pair(3.0, -1.0), std::pair(0.0, 1.0)}) {
+        PointCloud both = ball;
+        for (std::size_t i = 0; i < ball.points.size(); ++i) {
+            both.points.push_back(0.5 * ball.points[i] + Point{place, 0.0, 0.0});
+            both.normals.push_back(sign * ball.normals[i]);
+        }
+        const PreparedCloud prepared = prepare(both);
+        EXPECT_EQ(prepared.report.flipped_normals, std::ssize(ball.points));
+        EXPECT_EQ(prepared.report.warnings().size(), 1U);
+        ASSERT_EQ(prepared.cloud.points, both.points);
+        for (std::size_t i = 0; i < both.points.size(); ++i) {
+            const double turn = i < ball.points.size() ? 1.0 : -1.0;
+            EXPECT_LT(distance(prepared.cloud.normals[i], turn * both.normals[i]), 1e-12);
         }
     }
 }

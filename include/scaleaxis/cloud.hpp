@@ -46,17 +46,17 @@ struct CloudHole {
 
 /// What `prepare` found and did.
 struct CloudReport {
-    Index points = 0;                  ///< as given
-    Index not_finite = 0;              ///< points with a coordinate that is not finite or beyond 1e18, left out
-    Index duplicates = 0;              ///< points at the place of an earlier one, which were left out
-    Index thinned = 0;                 ///< points left out by `PrepareOptions::thinning`
-    Index outliers = 0;                ///< points off the surface that the others lie on, which were left out as well
-    bool has_normals = false;          ///< were normals given?
-    Index unknown_normals = 0;         ///< of length 0 or not finite, among the given ones
-    Index opposed_normals = 0;         ///< given ones that are against that of the nearest point
-    bool are_normals_flipped = false;  ///< the given normals pointed inward
-    Index parts = 0;                   ///< parts of the points, each oriented on its own (0: given normals)
-    double spacing = 0.0;              ///< median distance of the points from each other, as a length
+    Index points = 0;              ///< as given
+    Index not_finite = 0;          ///< points with a coordinate that is not finite or beyond 1e18, left out
+    Index duplicates = 0;          ///< points at the place of an earlier one, which were left out
+    Index thinned = 0;             ///< points left out by `PrepareOptions::thinning`
+    Index outliers = 0;            ///< points off the surface that the others lie on, which were left out as well
+    bool has_normals = false;      ///< were normals given?
+    Index unknown_normals = 0;     ///< of length 0 or not finite, among the given ones
+    Index opposed_normals = 0;     ///< given ones that are against that of the nearest point
+    Index flipped_normals = 0;     ///< given ones that pointed into the solid: all, or those of closed parts
+    Index parts = 0;               ///< parts of the points, each oriented on its own (0: given normals)
+    double spacing = 0.0;          ///< median distance of the points from each other, as a length
     double noise = 0.0;            ///< median deviation of the points from quadrics fitted to neighbours, in spacings
     double kernel = 0.0;           ///< suits the noise, for `MlsOptions`
     Index border_points = 0;       ///< points that have others on one side only

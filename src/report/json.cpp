@@ -201,7 +201,7 @@ Json json_of(const CloudReport& cloud) {
             {"bounds", json_of(cloud.bounds)},
             {"has_normals", cloud.has_normals},
             {"unknown_normals", cloud.unknown_normals},
-            {"are_normals_flipped", cloud.are_normals_flipped},
+            {"flipped_normals", cloud.flipped_normals},
             {"oriented_parts", cloud.parts},
             {"border_points", cloud.border_points},
             {"holes", std::move(holes)},

@@ -261,13 +261,20 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
     }
 }
 
-/// As a whole only.
-void turn_outward(PreparedCloud& cloud) {
-    std::vector<Index> all(cloud.cloud.normals.size());
-    std::iota(all.begin(), all.end(), 0);
-    if (volume(cloud, all) < 0.0) {
-        flip(cloud.cloud.normals, all);
-        cloud.report.are_normals_flipped = true;
+/// Given normals: parts may be turned one by one where they are closed. Of open ones only the whole tells something.
+void turn_outward(PreparedCloud& cloud, const IndexLists& parts) {
+    const std::vector<Point> given = cloud.cloud.normals;
+    if (!cloud.report.is_open()) {
+        orient_outward(cloud, parts);
+    } else {
+        std::vector<Index> all(given.size());
+        std::iota(all.begin(), all.end(), 0);
+        if (volume(cloud, all) < 0.0) {
+            flip(cloud.cloud.normals, all);
+        }
+    }
+    for (std::size_t i = 0; i < given.size(); ++i) {
+        cloud.report.flipped_normals += cloud.cloud.normals[i] == given[i] ? 0 : 1;
     }
 }
 
@@ -394,7 +401,7 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
         std::ranges::transform(chosen, chosen.begin(), normalized);
         report.opposed_normals = count_opposed(tree, points, chosen);
         if (!report.are_normals_inconsistent()) {
-            turn_outward(result);
+            turn_outward(result, connected_parts(tree, points, neighbors));
             return;
         }
     } else {
@@ -486,8 +493,13 @@ std::vector<Diagnostic> CloudReport::warnings() const {
                                    ? "all of them are turned anew"
                                    : "parts are thinner than the points are apart, or some normals point inward")});
     }
-    if (are_normals_flipped) {
-        result.push_back({"points.flipped_normals", "the normals point inward: all of them are flipped"});
+    if (flipped_normals > 0) {
+        result.push_back(
+            {"points.flipped_normals",
+             "the normals of " +
+                 (flipped_normals == kept() ? "all"
+                                            : std::to_string(flipped_normals) + " of " + std::to_string(kept())) +
+                 " points point into the solid: they are flipped"});
     }
     if (is_open() || !holes.empty()) {
         Words places;
@@ -508,7 +520,9 @@ bool CloudReport::is_open() const { return border_points > kFewBorderPoints * ke
 
 std::string CloudReport::note() const {
     if (parts == 0) {
-        return are_normals_flipped ? "given, and flipped" : "as given";
+        return flipped_normals == 0        ? "as given"
+               : flipped_normals == kept() ? "given, and flipped"
+                                           : "given, some flipped";
     }
     return std::string(are_normals_inconsistent() ? "as given, but" : "estimated, and") + " oriented in " +
            std::to_string(parts) + (parts == 1 ? " part" : " parts");
