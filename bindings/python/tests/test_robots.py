@@ -16,6 +16,7 @@ import yaml
 
 ROBOT = Path(__file__).resolve().parents[3] / "examples" / "robot" / "gripper.urdf"
 QUICK = {"delta": 0.05, "effort": 0.1}
+JOINT = '<joint name="{}" type="fixed"><parent link="{}"/><child link="{}"/></joint>'
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +70,36 @@ def test_pairs_at_rest(gripper):
     assert ("arm", "finger", "touches at rest") not in far.ignored
     with pytest.raises(scaleaxis.InvalidOption, match="no joint end"):
         scaleaxis.robot_spheres(ROBOT, 4, rest={"end": 1.0}, **QUICK)
+
+
+@pytest.mark.parametrize(
+    ("joints", "fault"),
+    [
+        ("", "no joint leads from link a to link b"),
+        (JOINT.format("j", "a", "c"), "joint j: there is no link c"),
+        (JOINT.format("j", "a", "b") + '<link name="a"/>', "two links are named a"),
+        (JOINT.format("j", "a", "b") + JOINT.format("k", "b", "a"), "joints lead from link a back to it"),
+        (JOINT.format("j", "a", "b").replace("/></joint>", '/><mimic joint="j"/></joint>'), "cannot follow itself"),
+        (JOINT.format("j", "a", "b"), None),
+    ],
+)
+def test_joints_lead_from_one_link_to_all_others(tmp_path, joints, fault):
+    ball = '<link name="{}"><collision><geometry><sphere radius="1"/></geometry></collision></link>'
+    file = tmp_path / "robot.urdf"
+    file.write_text(f'<robot name="r">{ball.format("a")}{ball.format("b")}{joints}</robot>')
+    if fault is None:
+        assert scaleaxis.robot_spheres(file, 1).ignored == [("a", "b", "adjacent")]
+        return
+    with pytest.raises(scaleaxis.FileError, match=fault):
+        scaleaxis.robot_spheres(file, 1)
+
+
+def test_boxes_have_positive_sizes(tmp_path):
+    file = tmp_path / "box.urdf"
+    box = '<link name="a"><collision><geometry><box size="1 -1 1"/></geometry></collision></link>'
+    file.write_text(f'<robot name="r">{box}</robot>')
+    with pytest.raises(scaleaxis.FileError, match="size should be positive"):
+        scaleaxis.robot_spheres(file, 1)
 
 
 def test_pinocchio_reads_the_description(gripper, tmp_path):

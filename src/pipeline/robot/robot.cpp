@@ -219,6 +219,9 @@ void add_collision(LinkShape& shape, const xml_node& collision, const fs::path& 
             append(shape.mesh, joined(std::move(read.objects)), frame, {scale[0], scale[1], scale[2]});
         } else if (kind == "box") {
             const auto size = numbers(attribute(element, "size"), 3, where + ": size");
+            if (std::ranges::min(size) <= 0.0) {
+                fail(where + ": size should be positive");
+            }
             append(shape.mesh, box({size[0], size[1], size[2]}), frame, {1, 1, 1});
         } else if (kind == "cylinder") {
             append(shape.mesh, cylinder(positive(element, "radius", where), positive(element, "length", where)), frame,
@@ -299,6 +302,9 @@ std::vector<Mount> mounts_of(const xml_node& robot, const std::string& file,
             if (leader == by_name.end()) {
                 fail(where + ": there is no joint " + attribute(mimic, "joint"));
             }
+            if (&mounts[leader->second] == &mount) {
+                fail(where + ": a joint cannot follow itself");
+            }
             mount.joint.rest =
                 numbers(attribute(mimic, "multiplier", "1"), 1, where).front() * mounts[leader->second].joint.rest +
                 numbers(attribute(mimic, "offset", "0"), 1, where).front();
@@ -335,7 +341,7 @@ struct Robot::Content {
         return found == mounts.end() ? nullptr : &*found;
     }
 
-    // The links above one, the nearest first. Links that move each other end somewhere, too.
+    // The links above one, the nearest first; one more than there are where joints go in a circle.
     std::vector<const Mount*> way_up(const std::string& link) const {
         std::vector<const Mount*> way;
         for (const Mount* next = mount_of_link(link); next != nullptr && way.size() <= mounts.size();
@@ -343,6 +349,32 @@ struct Robot::Content {
             way.push_back(next);
         }
         return way;
+    }
+
+    // Joints lead from one link, the base, to all others.
+    void check_tree() const {
+        std::set<std::string> known;
+        for (const std::string& link : names) {
+            if (!known.insert(link).second) {
+                fail(file.string() + ": two links are named " + link);
+            }
+        }
+        for (const RobotJoint& joint : joints) {
+            for (const std::string& link : {joint.parent, joint.child}) {
+                if (!known.contains(link)) {
+                    fail(file.string() + ": joint " + joint.name + ": there is no link " + link);
+                }
+            }
+        }
+        for (const std::string& link : names) {
+            const std::vector<const Mount*> way = way_up(link);
+            if (way.size() > mounts.size()) {
+                fail(file.string() + ": joints lead from link " + link + " back to it");
+            }
+            if (const std::string& top = way.empty() ? link : way.back()->joint.parent; top != base) {
+                fail(file.string() + ": no joint leads from link " + base + " to link " + top);
+            }
+        }
     }
 };
 
@@ -394,6 +426,7 @@ Robot::Robot(const std::string& text, const fs::path& file, const RobotOptions& 
         }
         content_->links.push_back(std::move(shape));
     }
+    content_->check_tree();
     if (content_->links.empty()) {
         fail(file.string() + ": no link collides with anything");
     }
