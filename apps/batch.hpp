@@ -72,7 +72,7 @@ bool is_stored_axis(const Source& source);
 /// \param input empty: none \throws InvalidOption
 std::vector<Source> sources_of_one(const std::filesystem::path& input, const SourceOptions& options);
 
-/// \throws InvalidOption if an output is an input, or the same as another one
+/// \throws InvalidOption if an output is the same as another one
 void check_all_outputs(const std::vector<Source>& sources, std::vector<std::filesystem::path> outputs,
                        CommonOptions& options);
 

@@ -8,6 +8,8 @@
 #include <optional>
 #include <utility>
 
+#include "io/input_file.hpp"
+
 namespace scaleaxis::app {
 
 TextCheck is_one_of(std::vector<std::string> texts) { return CLI::IsMember(std::move(texts)); }
@@ -40,9 +42,26 @@ CommandLine CommandLine::add_subcommand(const std::string& name, const std::stri
     return *app_->add_subcommand(name, description);
 }
 
+namespace {
+
+template <class Value>
+constexpr bool kIsInput = false;
+template <>
+constexpr bool kIsInput<std::filesystem::path> = true;
+template <>
+constexpr bool kIsInput<std::optional<std::filesystem::path>> = true;
+template <>
+constexpr bool kIsInput<std::vector<std::filesystem::path>> = true;
+
+}  // namespace
+
 template <class Value>
 Option CommandLine::add_option(const std::string& names, Value& value, const std::string& description) const {
-    return app_->add_option(names, value, description);
+    CLI::Option* const option = app_->add_option(names, value, description);
+    if constexpr (kIsInput<Value>) {
+        option->each([](const std::string& text) { io::protect_input(text); });
+    }
+    return option;
 }
 
 template <class Value>

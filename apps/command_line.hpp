@@ -60,7 +60,7 @@ class CommandLine {
     CommandLine(CLI::App& app) : app_(&app) {}
 
     CommandLine add_subcommand(const std::string& name, const std::string& description) const;
-    /// For the types that command_line.cpp names.
+    /// For the types that command_line.cpp names. A path is an input, which no output may overwrite; outputs are texts.
     template <class Value>
     Option add_option(const std::string& names, Value& value, const std::string& description = "") const;
     /// `set` gets each value.

@@ -161,7 +161,9 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     if (!page.empty()) {
         beside.push_back(page);
     }
-    check_distinct({output, source.name}, beside);
+    beside.push_back(output);
+    add_statistics_file(options.common.statistics, beside);
+    check_distinct({source.name}, beside);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     Stopwatch watch;

@@ -35,7 +35,7 @@ struct InfoOptions {
     std::optional<FileKind> kind;
     std::string format;
     SolidOptions solid;
-    fs::path repaired;
+    std::string repaired;
     bool is_json = false;
 };
 
@@ -153,7 +153,6 @@ Status run_info(const InfoOptions& options, const std::stop_token& cancel) {
     }
     if (!options.repaired.empty()) {
         check_output(options.repaired, with_format(check_mesh_output, {}));
-        check_distinct({options.file}, {options.repaired});
     }
     const Execution execution{0, {}, cancel};
     const Description description = reading(

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "io/input_file.hpp"
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -101,6 +102,7 @@ std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
         const std::string name = input.string();
         const bool is_list = name.size() > 1 && name.starts_with('@');
         const fs::path named = is_list ? fs::path(name.substr(1)) : input;
+        io::protect_input(named);
         reads_of_stdin += is_stdin(named) ? 1 : 0;
         if (reads_of_stdin > 1) {
             throw InvalidOption("standard input can be read only once, and is named twice");
@@ -108,6 +110,7 @@ std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
         const std::vector<Input> found = is_list ? files_of_list(named) : files_of(named, {});
         files.insert(files.end(), found.begin(), found.end());
     }
+    std::ranges::for_each(files, io::protect_input, &Input::file);
     return files;
 }
 

@@ -10,6 +10,7 @@
 #include <system_error>
 
 #include "base/files.hpp"
+#include "io/input_file.hpp"
 #include "io/output_file.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
@@ -121,16 +122,12 @@ void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::p
                                 ": use {name} and {scale} in the name of the output, and each scale once" + last);
         }
     }
-    for (const fs::path& input : inputs) {
-        if (known.contains(canonical(input))) {
-            throw InvalidOption("the output would overwrite the input " + input.string());
-        }
-    }
 }
 
 void check_output(const fs::path& file, const OutputCheck& check) {
     const fs::path made = make_folder_of(file);
     try {
+        io::check_is_no_input(file);
         check(file);
     } catch (const Error& error) {
         if (!made.empty()) {

@@ -38,7 +38,7 @@ std::string stem_of(const std::filesystem::path& file);
 /// The pattern with the name of `input` and the shortest decimal form of `scale` filled in.
 std::filesystem::path expand(const std::string& pattern, const std::filesystem::path& input, double scale);
 
-/// \throws InvalidOption if two of the outputs are the same file, or one of them is an input
+/// \throws InvalidOption if two of the outputs are the same file
 void check_distinct(const std::vector<std::filesystem::path>& inputs,
                     const std::vector<std::filesystem::path>& outputs);
 
@@ -51,8 +51,8 @@ OutputCheck with_format(const Check& check, const std::string& format, const std
     return [=](const std::filesystem::path& file) { check(file, written_format(file, format, otherwise)); };
 }
 
-/// Makes the folder of an output where that is missing, and runs the check. What is wrong with an output is wrong
-/// usage. \throws InvalidOption in place of FileError
+/// Makes the folder of an output where that is missing, and runs the check, after one that it is no input. What is
+/// wrong with an output is wrong usage. \throws InvalidOption in place of FileError
 void check_output(const std::filesystem::path& file, const OutputCheck& check);
 
 /// The check of an axis in its `written_format`. \param has_polygons whether it is to be written as polygons, which

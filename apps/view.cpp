@@ -33,7 +33,7 @@ namespace fs = std::filesystem;
 
 struct ViewOptions {
     std::vector<fs::path> results;
-    fs::path output;
+    std::string output;
     std::vector<fs::path> shapes;
     bool is_quiet = false;
 };
@@ -309,8 +309,6 @@ std::string read_model(const ModelSource& source, const std::stop_token& cancel)
 
 Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
     check_output(options.output, check_view_output);
-    check_distinct(options.results, {options.output});
-    check_distinct(options.shapes, {options.output});
     std::vector<ModelSource> models = sources_of(options.results);
     add_shapes(options.shapes, models);
 

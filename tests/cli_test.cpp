@@ -1408,6 +1408,34 @@ TEST_F(CommandLine, WritesToStdout) {
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
 }
 
+TEST_F(CommandLine, NoOutputOverwritesAFileThatIsRead) {
+    ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.2", "-q"}).status, 0);
+    write(folder_ / "shape.off", content(folder_ / "box.off"));
+    write(folder_ / "list.json", "box.off\n");
+    write(folder_ / "vertices.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nEnd\n");
+    write_two_boxes_gltf(folder_ / "boxes.gltf", 1);
+    for (const auto& [arguments, input] : std::vector<std::pair<Arguments, std::string>>{
+             {{"axis", "box.off", "-o", "./box.off"}, "box.off"},
+             {{"thickness", "axis.ply", "--surface", "shape.off", "--stats", "shape.off"}, "shape.off"},
+             {{"sizes", "box.off", "--at", "vertices.mesh", "-o", "a.sol", "--stats", "vertices.mesh"},
+              "vertices.mesh"},
+             {{"axis", "@list.json", "-o", "a.ply", "--stats", "list.json"}, "list.json"},
+             {{"axis", "boxes.gltf", "-o", "a.ply", "--stats", "boxes.bin"}, "boxes.bin"},
+             {{"filtration", "box.off", "-o", "a.ply", "--plot", "-", "--stats", "box.off"}, "box.off"},
+             {{"info", "box.off", "--repaired", "box.off"}, "box.off"},
+             {{"view", "axis.ply", "--shape", "shape.off", "-o", "shape.off"}, "shape.off"}}) {
+        SCOPED_TRACE(testing::PrintToString(arguments));
+        const std::string before = content(folder_ / input);
+        const Outcome outcome = run(arguments);
+        EXPECT_NE(outcome.status, 0);
+        EXPECT_TRUE(contains(outcome.err, "would overwrite the input")) << outcome.err;
+        EXPECT_TRUE(contains(outcome.err, input)) << outcome.err;
+        EXPECT_EQ(content(folder_ / input), before);
+    }
+    const Outcome both = run({"filtration", "box.off", "-o", "a.ply", "--plot", "b.svg", "--stats", "b.svg"});
+    expect_error_line(both, "would both be written to b.svg");
+}
+
 // A word after an option without a value is an input.
 TEST_F(CommandLine, TellsTheLastInputWhereTwoResultsWouldHaveOneName) {
     const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01", "--delta", "0.1"});

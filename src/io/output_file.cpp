@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "base/files.hpp"
+#include "io/input_file.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
@@ -49,6 +50,7 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
         }
         return;
     }
+    check_is_no_input(file_);
     // "x": fails if the file exists, so two writers never share a temporary file, and what a killed one has left behind
     // is never written to.
     for (int i = 0; stream_ == nullptr; ++i) {
