@@ -310,6 +310,11 @@ std::string read_model(const ModelSource& source, const std::stop_token& cancel)
 Status run_view(const ViewOptions& options, const std::stop_token& cancel) {
     check_output(options.output, check_view_output);
     std::vector<ModelSource> models = sources_of(options.results);
+    if (models.empty()) {
+        throw FileError(options.results.front().string() +
+                        ": there is nothing to show, since each of its inputs was skipped or has failed; name axes or "
+                        "a folder of them");
+    }
     add_shapes(options.shapes, models);
 
     Page page;

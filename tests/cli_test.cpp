@@ -1408,6 +1408,19 @@ TEST_F(CommandLine, WritesToStdout) {
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
 }
 
+TEST_F(CommandLine, NoPageIsMadeOfStatisticsWithoutResults) {
+    const Arguments axis{"axis", "box.off",         "-o",      "axis.ply",        "--delta",
+                         "0.2",  "--skip-existing", "--stats", "statistics.json", "-q"};
+    ASSERT_EQ(run(axis).status, 0);
+    ASSERT_EQ(run({"view", "statistics.json", "-o", "page.html", "-q"}).status, 0);
+    fs::remove(folder_ / "page.html");
+    ASSERT_EQ(run(axis).status, 0);
+    const Outcome outcome = run({"view", "statistics.json", "-o", "page.html"});
+    EXPECT_EQ(outcome.status, 3);
+    expect_error_line(outcome, "statistics.json: there is nothing to show, since each of its inputs was skipped");
+    EXPECT_FALSE(fs::exists(folder_ / "page.html"));
+}
+
 TEST_F(CommandLine, NoOutputOverwritesAFileThatIsRead) {
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.2", "-q"}).status, 0);
     write(folder_ / "shape.off", content(folder_ / "box.off"));
