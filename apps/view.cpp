@@ -215,15 +215,19 @@ std::optional<fs::path> shape_in(const fs::path& folder, const std::string& name
     return std::nullopt;
 }
 
-/// Gives the models the shapes of `--shape`: one for all, one for each, or those in a folder.
+/// Gives models without a surface of their own, whose values would be lost, the shapes of `--shape`: one for all, one
+/// for each, or those in a folder.
 void add_shapes(const std::vector<fs::path>& shapes, std::vector<ModelSource>& models) {
-    if (shapes.size() == 1 && fs::is_directory(shapes.front())) {
-        for (ModelSource& model : models) {
-            model.shape = shape_in(shapes.front(), model.name);
+    const bool is_folder = shapes.size() == 1 && fs::is_directory(shapes.front());
+    if (shapes.size() == 1 || shapes.size() == models.size()) {
+        if (std::ranges::all_of(models, [](const ModelSource& m) { return m.shape.has_value(); })) {
+            print_warning("--shape has no effect: all models have a surface of their own");
         }
-    } else if (shapes.size() == 1 || shapes.size() == models.size()) {
         for (std::size_t m = 0; m < models.size(); ++m) {
-            models[m].shape = shapes[shapes.size() == 1 ? 0 : m];
+            if (!models[m].shape) {
+                models[m].shape = is_folder ? shape_in(shapes.front(), models[m].name)
+                                            : std::optional(shapes[shapes.size() == 1 ? 0 : m]);
+            }
         }
     } else if (!shapes.empty()) {
         throw InvalidOption("--shape: " + std::to_string(shapes.size()) + " shapes for " +
@@ -350,7 +354,7 @@ Command view_command(CommandLine program) {
     command.add_option("-o,--output", options->output, "Page: .html").required().value_text("OUT");
     command
         .add_option("--shape", options->shapes,
-                    "Mesh of the input shape, to be seen around the axes: one for all models, one for each\n"
+                    "Mesh of the input shape, for models without a surface: one for all models, one for each\n"
                     "in their order, or a folder with meshes of their names")
         .one_text_each()
         .value_text("MESH");

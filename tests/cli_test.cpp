@@ -2326,6 +2326,15 @@ TEST_F(CommandLine, ViewMakesAPageOfResults) {
     EXPECT_EQ(content(folder_ / "moved.html"), content(folder_ / "shapeless.html"));
 }
 
+TEST_F(CommandLine, ShapesOfAViewReplaceNoSurfaceWithValues) {
+    ASSERT_EQ(run({"thickness", "box.off", "-o", "box-thickness.ply", "--delta", "0.2", "-q"}).status, 0);
+    ASSERT_EQ(run({"view", "box-thickness.ply", "-o", "alone.html", "-q"}).status, 0);
+    const Outcome outcome = run({"view", "box-thickness.ply", "--shape", "box.off", "-o", "page.html", "-q"});
+    EXPECT_EQ(outcome.status, 0);
+    EXPECT_TRUE(contains(outcome.err, "--shape has no effect")) << outcome.err;
+    EXPECT_EQ(content(folder_ / "page.html"), content(folder_ / "alone.html"));
+}
+
 TEST_F(CommandLine, ViewNamesWhatItCannotShow) {
     fs::create_directory(folder_ / "empty");
     write(folder_ / "other.json", "{\"schema\": \"scaleaxis.info/1\"}");
