@@ -157,16 +157,12 @@ bool shares_page(const std::vector<Job>& jobs) {
 
 /// \return whether one of them is stdout
 bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
-    std::vector<fs::path> inputs;
-    std::vector<fs::path> outputs;
-    const auto add = [&](const fs::path& file, const OutputCheck& check) {
-        check_output(file, check);
-        outputs.push_back(file);
-    };
+    std::vector<Output> outputs;
     for (std::size_t j = 0; j < jobs.size(); ++j) {
-        if (!jobs[j].source.file.empty()) {
-            inputs.push_back(jobs[j].source.file);
-        }
+        const auto add = [&](const fs::path& file, const OutputCheck& check) {
+            check_output(file, check);
+            outputs.push_back({file, jobs[j].source.name});
+        };
         for (const fs::path& file : jobs[j].axes) {
             add(file, axis_output_check(options.output_format, options.has_polygons));
         }
@@ -185,9 +181,9 @@ bool check_outputs(const AxisOptions& options, const std::vector<Job>& jobs) {
             add(jobs[j].view, check_view_output);
         }
     }
-    const bool has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
+    const bool has_data_on_stdout = std::ranges::any_of(outputs, is_stdout, &Output::file);
     add_statistics_file(options.common.statistics, outputs);
-    check_distinct(inputs, outputs);
+    check_distinct(outputs);
     if (options.skips_existing && !options.combined.empty()) {
         throw InvalidOption("--skip-existing: the file of --combined would lack the labels that are skipped");
     }
@@ -625,6 +621,11 @@ Status run_axis(AxisOptions options, const std::stop_token& cancel) {
         throw InvalidOption("--output is required");
     }
     validate(options.pipeline);
+    std::vector<double> scales = options.pipeline.scales;
+    std::ranges::sort(scales);
+    if (std::ranges::adjacent_find(scales) != scales.end()) {
+        throw InvalidOption("--scale has the same number twice: leave one of them out");
+    }
     check_sampling_options(options.source, has_sampling_options(options.pipeline));
     const std::vector<Job> jobs = planned_jobs(options, expanded(options.inputs));
     options.common.has_data_on_stdout = check_outputs(options, jobs);

@@ -203,16 +203,10 @@ std::vector<Source> sources_of_one(const fs::path& input, const SourceOptions& o
     return sources_of(inputs, options);
 }
 
-void check_all_outputs(const std::vector<Source>& sources, std::vector<fs::path> outputs, CommonOptions& options) {
-    options.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout);
+void check_all_outputs(std::vector<Output> outputs, CommonOptions& options) {
+    options.has_data_on_stdout = std::ranges::any_of(outputs, is_stdout, &Output::file);
     add_statistics_file(options.statistics, outputs);
-    std::vector<fs::path> inputs;
-    for (const Source& source : sources) {
-        if (!source.file.empty()) {
-            inputs.push_back(source.file);
-        }
-    }
-    check_distinct(inputs, outputs);
+    check_distinct(outputs);
 }
 
 }  // namespace scaleaxis::app

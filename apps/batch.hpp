@@ -13,6 +13,7 @@
 
 #include "documents.hpp"
 #include "options.hpp"
+#include "outputs.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/execution.hpp"
 #include "source.hpp"
@@ -73,7 +74,6 @@ bool is_stored_axis(const Source& source);
 std::vector<Source> sources_of_one(const std::filesystem::path& input, const SourceOptions& options);
 
 /// \throws InvalidOption if an output is the same as another one
-void check_all_outputs(const std::vector<Source>& sources, std::vector<std::filesystem::path> outputs,
-                       CommonOptions& options);
+void check_all_outputs(std::vector<Output> outputs, CommonOptions& options);
 
 }  // namespace scaleaxis::app

@@ -143,7 +143,7 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
     const fs::path output =
         checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
-    std::vector<fs::path> plots;
+    std::vector<Output> outputs{{output, source.name}};
     for (const std::string& plot : options.plots) {
         const fs::path extension = fs::path(plot).extension();
         if (extension == ".png") {
@@ -154,16 +154,14 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         if (plot != "-" && extension != ".svg" && extension != ".csv") {
             throw InvalidOption("--plot " + plot + ": plots are written to .svg, and their numbers to .csv");
         }
-        add_statistics_file(plot, plots);
+        add_statistics_file(plot, outputs);
     }
-    std::vector<fs::path> beside = plots;
     const fs::path page = page_output(options.view, source.name, 1.0);
     if (!page.empty()) {
-        beside.push_back(page);
+        outputs.push_back({page, source.name});
     }
-    beside.push_back(output);
-    add_statistics_file(options.common.statistics, beside);
-    check_distinct({source.name}, beside);
+    add_statistics_file(options.common.statistics, outputs);
+    check_distinct(outputs);
     options.common.has_data_on_stdout = is_stdout(output);
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     Stopwatch watch;

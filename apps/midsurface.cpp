@@ -248,11 +248,11 @@ SourceResult run_source(const MidsurfaceCommandOptions& options, const Source& s
 }
 
 MidsurfaceFiles files_of_midsurface(const MidsurfaceCommandOptions& options, const Source& source,
-                                    std::vector<fs::path>& outputs) {
+                                    std::vector<Output>& outputs) {
     const auto planned = [&](const std::string& pattern, const OutputCheck& check) {
         const fs::path file = expand(pattern, source.name, options.scale);
         check_output(file, check);
-        outputs.push_back(file);
+        outputs.push_back({file, source.name});
         return file;
     };
     MidsurfaceFiles files;
@@ -279,11 +279,11 @@ Status run_midsurface(MidsurfaceCommandOptions options, const std::stop_token& c
     }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
     std::vector<MidsurfaceFiles> files;
-    std::vector<fs::path> outputs;
+    std::vector<Output> outputs;
     for (const Source& source : sources) {
         files.push_back(files_of_midsurface(options, source, outputs));
     }
-    check_all_outputs(sources, outputs, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document("scaleaxis.midsurface/1"), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_source(options, sources[i], files[i], listener, cancel);

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <iostream>
-#include <set>
+#include <map>
 #include <system_error>
 
 #include "base/files.hpp"
@@ -102,7 +102,7 @@ fs::path expand(const std::string& pattern, const fs::path& input, double scale)
     return name;
 }
 
-void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::path>& outputs) {
+void check_distinct(const std::vector<Output>& outputs) {
     const auto canonical = [](const fs::path& file) {
         if (is_stdout(file)) {
             return file;
@@ -111,16 +111,23 @@ void check_distinct(const std::vector<fs::path>& inputs, const std::vector<fs::p
         const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
         return error ? fs::absolute(file) : path;
     };
-    std::set<fs::path> known;
-    for (const fs::path& output : outputs) {
-        if (!known.insert(canonical(output)).second) {
-            // What was meant as the value of an option before it, which takes none, is an input.
-            const std::string last = inputs.size() > 1 ? "; the last of " + std::to_string(inputs.size()) +
-                                                             " inputs is " + inputs.back().string()
-                                                       : "";
-            throw InvalidOption("two results would both be written to " + output.string() +
-                                ": use {name} and {scale} in the name of the output, and each scale once" + last);
+    std::map<fs::path, fs::path> known;  // and whose results they are
+    for (const auto& [file, input] : outputs) {
+        const auto [first, is_new] = known.emplace(canonical(file), input);
+        if (is_new) {
+            continue;
         }
+        const fs::path& other = first->second;
+        const bool has_two_inputs = !input.empty() && !other.empty() && input != other;
+        const std::string what =
+            has_two_inputs ? "the results of " + other.string() + " and " + input.string() : std::string("two results");
+        const std::string advice = is_stdout(file)   ? ", which takes one: name a file or a folder for the other"
+                                   : !has_two_inputs ? ": name each input and each output once"
+                                   : stem_of(input) == stem_of(other)
+                                       ? ", as both are called " + stem_of(input) +
+                                             ": rename one, or call the program for each, with another output"
+                                       : ": name a folder, or a file with {name} in it";
+        throw InvalidOption(what + " would both be written to " + file.string() + advice);
     }
 }
 
@@ -169,12 +176,12 @@ void write_axis_file(const fs::path& file, const MedialComplex& complex, const s
     write_axis(file, complex, format, options);
 }
 
-void add_statistics_file(const std::string& file, std::vector<fs::path>& outputs) {
+void add_statistics_file(const std::string& file, std::vector<Output>& outputs) {
     if (file == "-") {
-        outputs.emplace_back(kStdout);
+        outputs.push_back({kStdout});
     } else if (!file.empty()) {
         check_output(file, check_writable);
-        outputs.emplace_back(file);
+        outputs.push_back({file});
     }
 }
 
@@ -182,9 +189,9 @@ fs::path checked_output(const std::string& pattern, const fs::path& input, doubl
                         const OutputCheck& check) {
     const fs::path output = expand(pattern, input, scale);
     check_output(output, check);
-    std::vector<fs::path> outputs{output};
+    std::vector<Output> outputs{{output, input}};
     add_statistics_file(statistics, outputs);
-    check_distinct({input}, outputs);
+    check_distinct(outputs);
     return output;
 }
 

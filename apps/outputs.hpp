@@ -38,9 +38,14 @@ std::string stem_of(const std::filesystem::path& file);
 /// The pattern with the name of `input` and the shortest decimal form of `scale` filled in.
 std::filesystem::path expand(const std::string& pattern, const std::filesystem::path& input, double scale);
 
+/// A file that will be written.
+struct Output {
+    std::filesystem::path file;
+    std::filesystem::path input = {};  ///< whose result it holds; empty: that of all
+};
+
 /// \throws InvalidOption if two of the outputs are the same file
-void check_distinct(const std::vector<std::filesystem::path>& inputs,
-                    const std::vector<std::filesystem::path>& outputs);
+void check_distinct(const std::vector<Output>& outputs);
 
 /// Throws `FileError` if a file cannot be written.
 using OutputCheck = std::function<void(const std::filesystem::path&)>;
@@ -66,7 +71,7 @@ void write_axis_file(const std::filesystem::path& file, const MedialComplex& com
 
 /// Adds the file for statistics to the outputs, unless there is none.
 /// \throws InvalidOption if it cannot be written
-void add_statistics_file(const std::string& file, std::vector<std::filesystem::path>& outputs);
+void add_statistics_file(const std::string& file, std::vector<Output>& outputs);
 
 /// The file that the only output goes to, after all checks: `expand`, `check_output`, statistics, `check_distinct`.
 /// \throws InvalidOption

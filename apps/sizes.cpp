@@ -97,7 +97,7 @@ SourceResult run_sizes_of(const SizesCommandOptions& options, const Source& sour
 Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
     std::vector<fs::path> files;
-    std::vector<fs::path> meshes;  // that are written beside
+    std::vector<Output> outputs;
     const bool has_mesh = !options.mesh.empty();
     if (has_mesh && !options.output_format.empty()) {
         throw InvalidOption("--at writes a .sol: it goes without --output-format");
@@ -111,17 +111,16 @@ Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
             throw InvalidOption("--at writes a .sol, and not " + file.string());
         }
         files.push_back(file);
+        outputs.push_back({file, source.name});
         if (const auto mesh = mesh_beside_sizes(file, written_format(file, options.output_format, "pos"));
             mesh && !has_mesh) {
             if (is_stdout(file)) {
                 throw InvalidOption("a .sol has its mesh beside it: write it to a file");
             }
-            meshes.push_back(*mesh);
+            outputs.push_back({*mesh, source.name});
         }
     }
-    std::vector<fs::path> outputs = files;
-    outputs.insert(outputs.end(), meshes.begin(), meshes.end());
-    check_all_outputs(sources, outputs, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document("scaleaxis.sizes/1"), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_sizes_of(options, sources[i], files[i], listener, cancel);

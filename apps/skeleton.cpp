@@ -188,11 +188,11 @@ struct SkeletonFiles {
     fs::path page;   ///< empty: none
 };
 
-SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::vector<fs::path>& outputs) {
+SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::vector<Output>& outputs) {
     const auto add = [&](const std::string& pattern, const OutputCheck& check) {
         const fs::path file = expand(pattern, source.name, options.scale);
         check_output(file, check);
-        outputs.push_back(file);
+        outputs.push_back({file, source.name});
         return file;
     };
     SkeletonFiles files;
@@ -203,7 +203,7 @@ SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::v
     }
     if (!options.view.empty()) {
         files.page = page_output(options.view, source.name, options.scale);
-        outputs.push_back(files.page);
+        outputs.push_back({files.page, source.name});
     }
     return files;
 }
@@ -258,12 +258,12 @@ Status run_skeleton(CurveOptions options, const std::stop_token& cancel) {
         throw InvalidOption("--parts needs all branches, and --path leaves out most: ask for one of them");
     }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
-    std::vector<fs::path> outputs;
+    std::vector<Output> outputs;
     std::vector<SkeletonFiles> files;
     for (const Source& source : sources) {
         files.push_back(files_of(options, source, outputs));
     }
-    check_all_outputs(sources, outputs, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document(kSkeletonSchema), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_source(options, sources[i], files[i], listener, cancel);

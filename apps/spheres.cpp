@@ -304,6 +304,7 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
         throw InvalidOption("one input is needed, and these are " + std::to_string(sources.size()));
     }
     std::vector<fs::path> files;
+    std::vector<Output> outputs;
     for (const Source& source : sources) {
         const bool has_links = is_robot(source.file);
         if (has_links) {
@@ -332,11 +333,12 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
         files.push_back(expand(
             output_pattern(options.output, "spheres", false, spheres_extension(options.output_format), extension),
             source.name, 1.0));
+        outputs.push_back({files.back(), source.name});
         check_output(files.back(), [&](const fs::path& file) {
             check_spheres_output(file, written_format(file, options.output_format, extension), has_links);
         });
     }
-    check_all_outputs(sources, files, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document("scaleaxis.spheres/1"), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_source(options, sources[i], files[i], listener, cancel);

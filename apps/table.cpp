@@ -242,14 +242,10 @@ Status run_table(TableOptions options, const std::stop_token& cancel) {
                                  sources.front().name, options.scale);
     check_table_name(file, options.output_format);
     options.common.has_data_on_stdout = is_stdout(file);
-    std::vector<fs::path> outputs;
+    std::vector<Output> outputs;
     add_statistics_file(is_stdout(file) ? "-" : file.string(), outputs);
     add_statistics_file(options.common.statistics, outputs);
-    std::vector<fs::path> inputs;
-    for (const Source& source : sources) {
-        inputs.push_back(source.name);
-    }
-    check_distinct(inputs, outputs);
+    check_distinct(outputs);
     std::vector<Json> rows;
     const Status worst = collect_rows(options, sources, cancel, rows);
     stop_if_requested(cancel);

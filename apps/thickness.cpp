@@ -204,7 +204,7 @@ struct ThicknessFiles {
     fs::path page;  ///< empty: none
 };
 
-ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& source, std::vector<fs::path>& outputs) {
+ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& source, std::vector<Output>& outputs) {
     const auto planned = [&](const std::string& output, const std::string& kind, const std::string& format,
                              const std::string& otherwise, const auto& check) -> std::optional<fs::path> {
         if (output.empty()) {
@@ -213,7 +213,7 @@ ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& so
         const fs::path file =
             expand(output_pattern(output, kind, false, format, otherwise), source.name, options.scale);
         check_output(file, with_format(check, format, otherwise));
-        outputs.push_back(file);
+        outputs.push_back({file, source.name});
         return file;
     };
     ThicknessFiles files;
@@ -222,7 +222,7 @@ ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& so
                           [](const fs::path& file, const std::string& format) { check_image_output(file, format); });
     files.page = page_output(options.view, source.name, options.scale);
     if (!files.page.empty()) {
-        outputs.push_back(files.page);
+        outputs.push_back({files.page, source.name});
     }
     return files;
 }
@@ -369,12 +369,12 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
     if (!options.surface.empty() && !is_axis_file(options, sources.front())) {
         throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
     }
-    std::vector<fs::path> outputs;
+    std::vector<Output> outputs;
     std::vector<ThicknessFiles> files;
     for (const Source& source : sources) {
         files.push_back(files_of(options, source, outputs));
     }
-    check_all_outputs(sources, outputs, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document(kThicknessSchema), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_source(options, sources[i], files[i], listener, cancel);

@@ -54,17 +54,17 @@ struct WallsFiles {
 };
 
 std::optional<fs::path> planned_output(const std::string& output, const Source& source, const std::string& extension,
-                                       const OutputCheck& check, std::vector<fs::path>& outputs) {
+                                       const OutputCheck& check, std::vector<Output>& outputs) {
     if (output.empty()) {
         return std::nullopt;
     }
     const fs::path file = expand(output_pattern(output, "walls", false, "", extension), source.name, 1.0);
     check_output(file, check);
-    outputs.push_back(file);
+    outputs.push_back({file, source.name});
     return file;
 }
 
-WallsFiles walls_files_of(const WallsCommandOptions& options, const Source& source, std::vector<fs::path>& outputs) {
+WallsFiles walls_files_of(const WallsCommandOptions& options, const Source& source, std::vector<Output>& outputs) {
     WallsFiles files;
     files.document = planned_output(
         options.output, source, "json", [](const fs::path&) {}, outputs);
@@ -73,7 +73,7 @@ WallsFiles walls_files_of(const WallsCommandOptions& options, const Source& sour
         outputs);
     files.page = page_output(options.view, source.name, 1.0);
     if (!files.page.empty()) {
-        outputs.push_back(files.page);
+        outputs.push_back({files.page, source.name});
     }
     return files;
 }
@@ -187,12 +187,12 @@ Status run_walls(WallsCommandOptions options, const std::stop_token& cancel) {
         throw InvalidOption("nothing to look for: give --min-wall, --min-gap or --max-wall");
     }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
-    std::vector<fs::path> outputs;
+    std::vector<Output> outputs;
     std::vector<WallsFiles> files;
     for (const Source& source : sources) {
         files.push_back(walls_files_of(options, source, outputs));
     }
-    check_all_outputs(sources, outputs, options.common);
+    check_all_outputs(outputs, options.common);
     return run_sources(sources, options.source, options.common, new_document(kWallsSchema), cancel,
                        [&](std::size_t i, const Listener& listener) {
                            return run_walls_of(options, sources[i], files[i], listener, cancel);

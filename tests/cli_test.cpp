@@ -412,7 +412,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"ScaleBelowOne", axis_with({"--scale", "0.9"}), "--scale"},
         WrongUsage{"OneScaleOfSeveralBelowOne", axis_with({"--scale", "1.1,0.9"}), "--scale"},
         WrongUsage{"ScaleNaN", axis_with({"--scale", "nan"}), "--scale"},
-        WrongUsage{"ScaleTwice", axis_with({"--scale", "1.1,1.10"}), "out-s1.1.ply"},
+        WrongUsage{"ScaleTwice", axis_with({"--scale", "1.1,1.10"}), "--scale has the same number twice"},
         WrongUsage{"AngleTooLarge", axis_with({"--angle", "91"}), "--angle"},
         WrongUsage{"AngleAndNoFilter", axis_with({"--angle", "20", "--no-filter"}), "--no-filter"},
         WrongUsage{"ThreadsNegative", axis_with({"--threads", "-1"}), "--threads"},
@@ -1450,10 +1450,28 @@ TEST_F(CommandLine, NoOutputOverwritesAFileThatIsRead) {
 }
 
 // A word after an option without a value is an input.
-TEST_F(CommandLine, TellsTheLastInputWhereTwoResultsWouldHaveOneName) {
+TEST_F(CommandLine, TellsTheInputsWhoseResultsWouldHaveOneName) {
     const Outcome outcome = run({"axis", "box.off", "-o", "axis.ply", "--compact", "0.01", "--delta", "0.1"});
     EXPECT_EQ(outcome.status, 2);
-    expect_error_line(outcome, "the last of 2 inputs is 0.01");
+    expect_error_line(outcome, "the results of box.off and 0.01 would both be written to axis.ply: name a folder");
+    fs::create_directory(folder_ / "in");
+    write(folder_ / "in" / "box.off", content(folder_ / "box.off"));
+    write_two_boxes_gltf(folder_ / "boxes.gltf", 1);
+    for (const auto& [arguments, message] : std::vector<std::pair<Arguments, std::string>>{
+             {{"axis", "box.off", "boxes.gltf", "in/box.off", "boxes.gltf", "-o", "out/"},
+              "the results of box.off and in/box.off would both be written to out/box-axis.ply, as both are called "
+              "box"},
+             {{"axis", "box.off", "box.off", "-o", "out/"}, "name each input and each output once"},
+             {{"axis", "box.off", "-o", "out/", "--scale", "1.5,1,1.5"}, "--scale has the same number twice"},
+             {{"filtration", "box.off", "-o", "a.ply", "--plot", "a.svg", "--plot", "a.svg"},
+              "two results would both be written to a.svg: name each input and each output once"},
+             {{"walls", "boxes.gltf", "--each-object", "--min-wall", "1", "-o", "-"},
+              "the results of boxes-object1 and boxes-object2 would both be written to /dev/stdout, which takes "
+              "one"}}) {
+        const Outcome refused = run(arguments);
+        EXPECT_EQ(refused.status, 2);
+        expect_error_line(refused, message);
+    }
 }
 
 // What is between two balls belongs to the solid, whether the edge is shorter than their radii or longer.
