@@ -95,6 +95,11 @@ std::vector<Input> files_of_list(const fs::path& list) {
 
 }  // namespace
 
+bool is_folder_without_inputs(const fs::path& file) {
+    std::error_code error;
+    return fs::is_directory(file, error) && files_of_folder(file, {}).front().file == file;
+}
+
 std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
     std::vector<Input> files;
     std::ptrdiff_t reads_of_stdin = 0;

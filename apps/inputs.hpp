@@ -20,6 +20,9 @@ struct Input {
     std::string origin;  ///< which line of which list names it; empty: the command line
 };
 
+/// Is it a folder in which no file is an input by its name?
+bool is_folder_without_inputs(const std::filesystem::path& file);
+
 /// \throws InvalidOption if a list names nothing, or standard input would be read twice
 /// \throws FileError if a list cannot be read, or a folder
 std::vector<Input> expanded(const std::vector<std::filesystem::path>& inputs);

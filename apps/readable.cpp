@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/files.hpp"
+#include "inputs.hpp"
 #include "interrupts.hpp"
 #include "scaleaxis/io.hpp"
 #include "status.hpp"
@@ -178,6 +179,12 @@ TriangleMesh read_mesh_with_warnings(const fs::path& file, const fs::path& name)
 
 FileError ReadableFile::renamed(const FileError& error) const {
     Diagnostic diagnostic = error.diagnostic();
+    // What else a folder may have in it, as slices of DICOM, has a code and an advice of its own.
+    if (diagnostic.code == "file.open" && is_folder_without_inputs(input_)) {
+        diagnostic.message = input_.string() +
+                             ": cannot read: no file in this folder has the ending of an input; name a file with "
+                             "another one itself";
+    }
     const std::string copy = path_.string();
     for (std::size_t at = diagnostic.message.find(copy); copy != input_.string() && at != std::string::npos;
          at = diagnostic.message.find(copy, at + input_.string().size())) {

@@ -26,7 +26,7 @@ class ReadableFile {
 
     const std::filesystem::path& path() const { return path_; }
 
-    /// The error with the name of the input in place of that of the copy.
+    /// The error with the name of the input in place of that of the copy, and with what is wrong with a folder.
     FileError renamed(const FileError& error) const;
 
    private:

@@ -1408,6 +1408,19 @@ TEST_F(CommandLine, WritesToStdout) {
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
 }
 
+TEST_F(CommandLine, AFolderWithoutInputsIsTold) {
+    fs::create_directory(folder_ / "empty");
+    fs::create_symlink("nowhere.off", folder_ / "empty" / "link.off");
+    for (const std::string command : {"axis", "table"}) {
+        const Outcome outcome = run({command, "empty", "-o", "out/"});
+        EXPECT_EQ(outcome.status, 3);
+        expect_error_line(outcome, "empty: cannot read: no file in this folder has the ending of an input");
+    }
+    fs::copy_file(folder_ / "box.off", folder_ / "empty" / "box.off");
+    expect_error_line(run({"thickness", "empty", "-o", "out/"}),
+                      "empty: cannot read: it is a folder; name a file in it");
+}
+
 TEST_F(CommandLine, NoPageIsMadeOfStatisticsWithoutResults) {
     const Arguments axis{"axis", "box.off",         "-o",      "axis.ply",        "--delta",
                          "0.2",  "--skip-existing", "--stats", "statistics.json", "-q"};
