@@ -72,8 +72,12 @@ bool is_mesh_format(const fs::path& file, const std::string& format) {
 void check_midsurface_output(const fs::path& file, const std::string& format) {
     if (is_mesh_format(file, format)) {
         check_mesh_output(file, format);
-    } else {
+        return;
+    }
+    try {
         check_axis_output(file, format);
+    } catch (const FileError& error) {
+        throw error.diagnostic().code == "file.format" ? FileError(std::string(error.what()) + ", .stl, .off") : error;
     }
 }
 
