@@ -15,6 +15,7 @@
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
+#include "io/output_file.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "page.hpp"
@@ -64,10 +65,16 @@ std::optional<fs::path> planned_output(const std::string& output, const Source& 
     return file;
 }
 
+void check_document(const fs::path& file) {
+    if (!is_stdout(file) && file.extension() != ".json") {
+        throw FileError("cannot write " + file.string() + ": findings are written to .json");
+    }
+    io::check_output_file(file);
+}
+
 WallsFiles walls_files_of(const WallsCommandOptions& options, const Source& source, std::vector<Output>& outputs) {
     WallsFiles files;
-    files.document = planned_output(
-        options.output, source, "json", [](const fs::path&) {}, outputs);
+    files.document = planned_output(options.output, source, "json", check_document, outputs);
     files.mesh = planned_output(
         options.mesh, source, "ply", [](const fs::path& file) { check_surface_output(file, written_format(file, "")); },
         outputs);

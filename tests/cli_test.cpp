@@ -442,6 +442,7 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"ViewWithTooManyShapes",
                    {"view", "box.off", "--shape", "box.off", "--shape", "box.off", "-o", "out.html"},
                    "--shape"},
+        WrongUsage{"UnknownExtensionOfWalls", {"walls", "box.off", "--min-wall", "1", "-o", "out.zzz"}, ".json"},
         WrongUsage{"UnknownExtensionOfMidsurface",
                    {"midsurface", "box.off", "-o", "out.zzz"},
                    ".ply, .glb, .obj, .ma, .vtp, .stl, .off"},
