@@ -462,6 +462,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"CombinedWithoutLabels", axis_with({"--combined", "all.ply"}), "--combined"},
         WrongUsage{"CombinedObj", {"axis", "box.off", "--each-label", "--combined", "all.obj"}, ".ply and .vtp"},
         WrongUsage{"LabelsOfAMesh", axis_with({"--each-label"}), "--each-label is for inputs of kind image"},
+        WrongUsage{"ChosenLabelOfAMesh", axis_with({"--label", "1"}),
+                   "a choice of labels is for inputs of kind image, this one is of kind mesh: leave it out"},
         WrongUsage{"SmoothingOfAMesh", axis_with({"--mask-smoothing", "0.7"}), "mask smoothing is for inputs"},
         WrongUsage{"PointsOfAMesh", axis_with({"--points", "mls"}), "points method is for inputs of kind points"},
         WrongUsage{"KernelOfAMesh", axis_with({"--kernel", "3"}), "kernel is for inputs of kind points"},

@@ -467,13 +467,13 @@ void validate(const LoadOptions& options, std::string_view kind) {
     require(!options.kernel || options.cloud_method != CloudMethod::kCrust,
             "the kernel has no effect with the points method crust: it is for mls");
     const auto check = [&](bool is_given, const std::string& option, const std::string& its_kind) {
-        require(!is_given || kind == its_kind,
-                option + " is for inputs of kind " + its_kind + ", this one is of kind " + std::string(kind));
+        require(!is_given || kind == its_kind, option + " is for inputs of kind " + its_kind +
+                                                   ", this one is of kind " + std::string(kind) + ": leave it out");
     };
     check(options.solid.kind != SolidKind::kAuto, "the kind of solid", "mesh");
-    check(!options.objects.empty(), "objects", "mesh");
+    check(!options.objects.empty(), "a choice of objects", "mesh");
     check(options.iso.has_value(), "iso", "image");
-    check(has_labels, "labels", "image");
+    check(has_labels, "a choice of labels", "image");
     check(options.is_nonzero, "nonzero", "image");
     check(options.mask_smoothing.has_value(), "mask smoothing", "image");
     check(options.fills_voids, "fill voids", "image");
