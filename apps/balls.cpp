@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -82,11 +83,8 @@ Source single_source(const BallsOptions& options) {
     return sources.front();
 }
 
-Status run_balls(BallsOptions options, const std::stop_token& cancel) {
-    const ScaleAxisOptions sampling{
-        .delta = options.delta, .delta_range = options.delta_range, .sizing = options.sizing};
-    check_sampling_options(options.source, has_sampling_options(sampling));
-    Source source = single_source(options);
+Status run_balls_of(BallsOptions options, Source source, const ScaleAxisOptions& sampling,
+                    const std::stop_token& cancel) {
     const fs::path output =
         checked_output(output_pattern(options.output, "balls", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_balls_output, options.output_format));
@@ -148,6 +146,14 @@ Status run_balls(BallsOptions options, const std::stop_token& cancel) {
                      {"warnings", json_of(warnings)}});
     write_statistics(options.common.statistics, document);
     return kDone;
+}
+
+Status run_balls(const BallsOptions& options, const std::stop_token& cancel) {
+    const ScaleAxisOptions sampling{
+        .delta = options.delta, .delta_range = options.delta_range, .sizing = options.sizing};
+    check_sampling_options(options.source, has_sampling_options(sampling));
+    const Source source = single_source(options);
+    return telling_source(source, [&] { return run_balls_of(options, source, sampling, cancel); });
 }
 
 }  // namespace

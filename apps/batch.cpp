@@ -129,6 +129,17 @@ std::string add_error(const Source& source, const std::exception& error, Json& e
     return text;
 }
 
+Status telling_source(const Source& source, const std::function<Status()>& work) {
+    try {
+        return work();
+    } catch (const Cancelled&) {
+        throw;
+    } catch (const std::exception& error) {
+        print_error(describe(error, source.name));
+        return status_of(error);
+    }
+}
+
 void print_failures(std::size_t failures, std::size_t inputs) {
     if (failures > 0 && inputs > 1) {
         print_error(std::to_string(failures) + " of " + std::to_string(inputs) + " inputs failed");
@@ -144,14 +155,16 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
         }
     };
     if (!is_each(source_options)) {
-        SourceResult result;
-        for_each_source(
-            sources, options, cancel, [&](std::size_t i, const Listener& listener) { result = work(i, listener); },
-            [](std::size_t) {});
-        print_summary(result.summary);
-        head.update(result.entry);
-        write_statistics(options.statistics, head);
-        return result.status;
+        return telling_source(sources.front(), [&] {
+            SourceResult result;
+            for_each_source(
+                sources, options, cancel, [&](std::size_t i, const Listener& listener) { result = work(i, listener); },
+                [](std::size_t) {});
+            print_summary(result.summary);
+            head.update(result.entry);
+            write_statistics(options.statistics, head);
+            return result.status;
+        });
     }
     BatchStatistics statistics(options.statistics, std::move(head), false);
     std::vector<SourceResult> results(sources.size());

@@ -49,6 +49,9 @@ Json entry_of(const Source& source);
 /// Adds to the entry what went wrong. \return the error for people
 std::string add_error(const Source& source, const std::exception& error, Json& entry);
 
+/// What `work` returns; what goes wrong is told with the name of its source.
+Status telling_source(const Source& source, const std::function<Status()>& work);
+
 /// Tells how many of several inputs failed, if any did.
 void print_failures(std::size_t failures, std::size_t inputs);
 

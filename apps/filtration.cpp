@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
 #include "interrupts.hpp"
@@ -131,15 +132,8 @@ void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels)
     }
 }
 
-Status run_filtration(FiltrationRunOptions options, const std::stop_token& cancel) {
-    const bool is_axis = is_stored_axis(options);
-    if (is_axis && has_sampling_options(pipeline_of(options))) {
-        throw InvalidOption("delta and sampling have no effect on an axis that is there already: leave them out");
-    }
-    if (is_axis) {
-        check_unused(options.source, "an axis that is there already", {});
-    }
-    const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
+Status run_filtration_of(FiltrationRunOptions options, const Source& source, bool is_axis,
+                         const std::stop_token& cancel) {
     const fs::path output =
         checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
@@ -214,6 +208,18 @@ Status run_filtration(FiltrationRunOptions options, const std::stop_token& cance
         write_page(page, model, options.common.has_summary(), {options.common.threads, {}, cancel});
     }
     return kDone;
+}
+
+Status run_filtration(const FiltrationRunOptions& options, const std::stop_token& cancel) {
+    const bool is_axis = is_stored_axis(options);
+    if (is_axis && has_sampling_options(pipeline_of(options))) {
+        throw InvalidOption("delta and sampling have no effect on an axis that is there already: leave them out");
+    }
+    if (is_axis) {
+        check_unused(options.source, "an axis that is there already", {});
+    }
+    const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
+    return telling_source(source, [&] { return run_filtration_of(options, source, is_axis, cancel); });
 }
 
 }  // namespace

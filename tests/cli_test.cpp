@@ -1414,6 +1414,20 @@ TEST_F(CommandLine, WritesToStdout) {
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
 }
 
+TEST_F(CommandLine, WhatIsWrongWithAModelIsToldWithItsName) {
+    write(folder_ / "far.off", box_off(1e12, 0, 0, 1));
+    for (const Arguments& arguments : {Arguments{"axis", "-o", "a.ply"}, Arguments{"balls", "-o", "a.ply"},
+                                       Arguments{"filtration", "-o", "a.ply"}, Arguments{"sizes", "-o", "a.pos"},
+                                       Arguments{"walls", "--min-wall", "1"}, Arguments{"thickness", "-o", "a.ply"},
+                                       Arguments{"skeleton", "-o", "a.swc"}, Arguments{"table", "-o", "a.csv"}}) {
+        Arguments all = arguments;
+        all.emplace_back("far.off");
+        const Outcome outcome = run(all);
+        EXPECT_EQ(outcome.status, 4);
+        EXPECT_TRUE(contains(outcome.err, "error: far.off: too far from the origin")) << outcome.err;
+    }
+}
+
 TEST_F(CommandLine, AFolderWithoutInputsIsTold) {
     fs::create_directory(folder_ / "empty");
     fs::create_symlink("nowhere.off", folder_ / "empty" / "link.off");
