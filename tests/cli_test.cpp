@@ -1414,6 +1414,17 @@ TEST_F(CommandLine, WritesToStdout) {
     expect_error_line(unknown, "the format has to be one of .ply, .glb, .obj, .ma, .vtp");
 }
 
+TEST_F(CommandLine, NamesOfResultsMayBeAsLongAsNamesOfFiles) {
+    constexpr std::size_t kLongest = 255;
+    const std::string longest(kLongest - std::string("-axis.ply").size(), 'x');
+    write(folder_ / (longest + ".off"), content(folder_ / "box.off"));
+    const Outcome outcome = run({"axis", longest + ".off", "-o", "out/", "--delta", "0.2", "-q"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(files(), (std::set<std::string>{"box.off", longest + ".off", "out", "out/" + longest + "-axis.ply"}));
+    // Told before the work begins.
+    expect_error_line(run({"axis", "missing.off", "-o", longest + "x-axis.ply"}), "File name too long");
+}
+
 TEST_F(CommandLine, WhatIsWrongWithAModelIsToldWithItsName) {
     write(folder_ / "far.off", box_off(1e12, 0, 0, 1));
     for (const Arguments& arguments : {Arguments{"axis", "-o", "a.ply"}, Arguments{"balls", "-o", "a.ply"},

@@ -43,6 +43,9 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
     if (fs::is_directory(file_, error)) {
         fail(file_, EISDIR);
     }
+    if (error == std::errc::filename_too_long) {
+        fail(file_, ENAMETOOLONG);
+    }
     if (is_stdout(file_) || takes_bytes_at_once(file_)) {
         stream_ = is_stdout(file_) ? open_stdout() : open_stream(file_, "wb");
         if (stream_ == nullptr) {
@@ -53,13 +56,18 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
     check_is_no_input(file_);
     // "x": fails if the file exists, so two writers never share a temporary file, and what a killed one has left behind
     // is never written to.
-    for (int i = 0; stream_ == nullptr; ++i) {
-        fs::path name = file_;
+    bool is_too_long = false;  // the name with what is appended, so that this stands alone
+    for (int i = 0; stream_ == nullptr;) {
+        fs::path name = is_too_long ? file_.parent_path() / "" : file_;
         name += ".part" + std::to_string(i);
         stream_ = open_stream(name, "wbx");
         if (stream_ != nullptr) {
             temporary_ = std::move(name);
-        } else if (errno != EEXIST) {
+        } else if (errno == ENAMETOOLONG && !is_too_long) {
+            is_too_long = true;
+        } else if (errno == EEXIST) {
+            ++i;
+        } else {
             fail(file_, errno);
         }
     }
