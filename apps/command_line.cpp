@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "io/input_file.hpp"
+#include "inputs.hpp"
 
 namespace scaleaxis::app {
 
@@ -59,7 +59,7 @@ template <class Value>
 Option CommandLine::add_option(const std::string& names, Value& value, const std::string& description) const {
     CLI::Option* const option = app_->add_option(names, value, description);
     if constexpr (kIsInput<Value>) {
-        option->each([](const std::string& text) { io::protect_input(text); });
+        option->each([](const std::string& text) { protect_input(text); });
     }
     return option;
 }

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cctype>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <system_error>
 
-#include "io/input_file.hpp"
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -93,7 +94,37 @@ std::vector<Input> files_of_list(const fs::path& list) {
     return files;
 }
 
+// Those of this run of the program.
+std::set<fs::path>& named_inputs() {
+    static std::set<fs::path> files;
+    return files;
+}
+
 }  // namespace
+
+fs::path without_links(const fs::path& file) {
+    std::error_code error;
+    const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
+    return error ? fs::absolute(file) : path;
+}
+
+void forget_inputs() { named_inputs().clear(); }
+
+void protect_input(const fs::path& file) {
+    std::error_code error;
+    const fs::file_status status = fs::status(file, error);
+    // Pipes and devices cannot be overwritten.
+    if (fs::is_regular_file(status) || !fs::exists(status)) {
+        named_inputs().insert(without_links(file));
+    }
+}
+
+void check_is_no_input(const fs::path& file) {
+    if (named_inputs().contains(without_links(file))) {
+        throw InvalidOption("the output would overwrite the input " + file.string() +
+                            ": choose another name or folder");
+    }
+}
 
 bool is_folder_without_inputs(const fs::path& file) {
     std::error_code error;
@@ -107,7 +138,7 @@ std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
         const std::string name = input.string();
         const bool is_list = name.size() > 1 && name.starts_with('@');
         const fs::path named = is_list ? fs::path(name.substr(1)) : input;
-        io::protect_input(named);
+        protect_input(named);
         reads_of_stdin += is_stdin(named) ? 1 : 0;
         if (reads_of_stdin > 1) {
             throw InvalidOption("standard input can be read only once, and is named twice");
@@ -115,7 +146,7 @@ std::vector<Input> expanded(const std::vector<fs::path>& inputs) {
         const std::vector<Input> found = is_list ? files_of_list(named) : files_of(named, {});
         files.insert(files.end(), found.begin(), found.end());
     }
-    std::ranges::for_each(files, io::protect_input, &Input::file);
+    std::ranges::for_each(files, protect_input, &Input::file);
     return files;
 }
 

@@ -20,6 +20,17 @@ struct Input {
     std::string origin;  ///< which line of which list names it; empty: the command line
 };
 
+/// The same for all names of a file.
+std::filesystem::path without_links(const std::filesystem::path& file);
+
+/// Files that the command line names as inputs, of any option, are not overwritten: `CommandLine` and `expanded` add
+/// them.
+void protect_input(const std::filesystem::path& file);
+/// \throws InvalidOption if the file is one of them
+void check_is_no_input(const std::filesystem::path& file);
+/// Another command line begins.
+void forget_inputs();
+
 /// Is it a folder in which no file is an input by its name?
 bool is_folder_without_inputs(const std::filesystem::path& file);
 

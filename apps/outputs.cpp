@@ -10,7 +10,7 @@
 #include <system_error>
 
 #include "base/files.hpp"
-#include "io/input_file.hpp"
+#include "inputs.hpp"
 #include "io/output_file.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
@@ -103,17 +103,9 @@ fs::path expand(const std::string& pattern, const fs::path& input, double scale)
 }
 
 void check_distinct(const std::vector<Output>& outputs) {
-    const auto canonical = [](const fs::path& file) {
-        if (is_stdout(file)) {
-            return file;
-        }
-        std::error_code error;  // a pipe has no canonical path
-        const fs::path path = fs::weakly_canonical(fs::absolute(file), error);
-        return error ? fs::absolute(file) : path;
-    };
     std::map<fs::path, fs::path> known;  // and whose results they are
     for (const auto& [file, input] : outputs) {
-        const auto [first, is_new] = known.emplace(canonical(file), input);
+        const auto [first, is_new] = known.emplace(is_stdout(file) ? file : without_links(file), input);
         if (is_new) {
             continue;
         }
@@ -134,7 +126,7 @@ void check_distinct(const std::vector<Output>& outputs) {
 void check_output(const fs::path& file, const OutputCheck& check) {
     const fs::path made = make_folder_of(file);
     try {
-        io::check_is_no_input(file);
+        check_is_no_input(file);
         check(file);
     } catch (const Error& error) {
         if (!made.empty()) {

@@ -8,8 +8,8 @@
 #include <string>
 
 #include "commands.hpp"
+#include "inputs.hpp"
 #include "interrupts.hpp"
-#include "io/input_file.hpp"
 #include "manual.hpp"
 #include "outputs.hpp"
 #include "scaleaxis/version.hpp"
@@ -77,7 +77,7 @@ Status run_chosen(int argc, const char* const* argv, const std::stop_token& canc
 
 Status run_program(int argc, const char* const* argv, const std::stop_token& cancel) {
     set_current_interrupts(cancel);
-    const io::ProtectedInputs protected_inputs;
+    forget_inputs();
     try {
         return run_chosen(argc, argv, cancel);
     } catch (const std::exception& error) {

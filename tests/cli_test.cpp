@@ -1465,19 +1465,17 @@ TEST_F(CommandLine, NoPageIsMadeOfStatisticsWithoutResults) {
     EXPECT_FALSE(fs::exists(folder_ / "page.html"));
 }
 
-TEST_F(CommandLine, NoOutputOverwritesAFileThatIsRead) {
+TEST_F(CommandLine, NoOutputOverwritesAnInputOfAnyOption) {
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.2", "-q"}).status, 0);
     write(folder_ / "shape.off", content(folder_ / "box.off"));
     write(folder_ / "list.json", "box.off\n");
     write(folder_ / "vertices.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n1\n0 0 0 0\nEnd\n");
-    write_two_boxes_gltf(folder_ / "boxes.gltf", 1);
     for (const auto& [arguments, input] : std::vector<std::pair<Arguments, std::string>>{
              {{"axis", "box.off", "-o", "./box.off"}, "box.off"},
              {{"thickness", "axis.ply", "--surface", "shape.off", "--stats", "shape.off"}, "shape.off"},
              {{"sizes", "box.off", "--at", "vertices.mesh", "-o", "a.sol", "--stats", "vertices.mesh"},
               "vertices.mesh"},
              {{"axis", "@list.json", "-o", "a.ply", "--stats", "list.json"}, "list.json"},
-             {{"axis", "boxes.gltf", "-o", "a.ply", "--stats", "boxes.bin"}, "boxes.bin"},
              {{"filtration", "box.off", "-o", "a.ply", "--plot", "-", "--stats", "box.off"}, "box.off"},
              {{"info", "box.off", "--repaired", "box.off"}, "box.off"},
              {{"view", "axis.ply", "--shape", "shape.off", "-o", "shape.off"}, "shape.off"}}) {

@@ -8,9 +8,6 @@
 #include <cstdio>
 #include <fstream>
 #include <memory>
-#include <mutex>
-#include <optional>
-#include <set>
 #include <system_error>
 #include <utility>
 
@@ -61,47 +58,7 @@ std::string advice_for_folder(const std::filesystem::path& folder) {
     return {};
 }
 
-struct Protection {
-    std::mutex mutex;
-    std::optional<std::set<std::filesystem::path>> files;  ///< canonical; nothing: nothing is protected
-};
-
-Protection& protection() {
-    static Protection instance;
-    return instance;
-}
-
 }  // namespace
-
-ProtectedInputs::ProtectedInputs() {
-    const std::lock_guard lock(protection().mutex);
-    protection().files.emplace();
-}
-
-ProtectedInputs::~ProtectedInputs() {
-    const std::lock_guard lock(protection().mutex);
-    protection().files.reset();
-}
-
-void protect_input(const std::filesystem::path& file) {
-    const std::lock_guard lock(protection().mutex);
-    std::error_code error;
-    const std::filesystem::file_status status = std::filesystem::status(file, error);
-    // Pipes and devices cannot be overwritten.
-    if (protection().files && (std::filesystem::is_regular_file(status) || !std::filesystem::exists(status))) {
-        protection().files->insert(std::filesystem::weakly_canonical(std::filesystem::absolute(file), error));
-    }
-}
-
-void check_is_no_input(const std::filesystem::path& file) {
-    const std::lock_guard lock(protection().mutex);
-    std::error_code error;
-    if (protection().files &&
-        protection().files->contains(std::filesystem::weakly_canonical(std::filesystem::absolute(file), error))) {
-        throw FileError(Diagnostic{
-            "file.write", "the output would overwrite the input " + utf8_of(file) + ": choose another name or folder"});
-    }
-}
 
 std::string read_file(const std::filesystem::path& file, bool is_enough(std::string_view beginning)) {
     constexpr std::uintmax_t kBeginning = std::uintmax_t{1} << 24;  // heads with names of segments have some 100 kB
@@ -114,7 +71,6 @@ std::string read_file(const std::filesystem::path& file, bool is_enough(std::str
         const std::string advice = advice_for_folder(file);
         throw advice.empty() ? cannot_read("it is a folder; name a file in it") : unsupported(advice);
     }
-    protect_input(file);
     const Stream stream(open_stream(file, "rb"), &std::fclose);
     if (!stream) {
         throw cannot_read(std::generic_category().message(errno));
@@ -147,7 +103,6 @@ std::uintmax_t size_of_file(const std::filesystem::path& file) {
 }
 
 ByteSource bytes_of_file(const std::filesystem::path& file, std::uintmax_t begin) {
-    protect_input(file);
     const auto stream = std::make_shared<std::ifstream>(file, std::ios::binary);
     if (!stream->seekg(static_cast<std::streamoff>(begin))) {
         throw FileError(Diagnostic{"file.open", "its data file " + utf8_of(file.filename()) + " cannot be read"});

@@ -24,22 +24,6 @@ bool is_plain_file(const std::filesystem::path& file);
 ByteSource bytes_of_file(const std::filesystem::path& file, std::uintmax_t begin);
 std::uintmax_t size_of_file(const std::filesystem::path& file);
 
-/// While one lives, no file is overwritten that has been read by the functions of this file since, or was added: for a
-/// program, whose user names inputs and outputs at once. A library leaves that to its caller.
-class ProtectedInputs {
-   public:
-    ProtectedInputs();
-    ~ProtectedInputs();
-    ProtectedInputs(const ProtectedInputs&) = delete;
-    ProtectedInputs& operator=(const ProtectedInputs&) = delete;
-};
-
-/// Protects a file while there are `ProtectedInputs`, at other times nothing.
-void protect_input(const std::filesystem::path& file);
-
-/// Throws a `FileError` if the file is a protected input.
-void check_is_no_input(const std::filesystem::path& file);
-
 /// Throws a `FileError` if a file of this size is empty or too large to be read.
 void check_size(std::uintmax_t bytes);
 

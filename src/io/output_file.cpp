@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "base/files.hpp"
-#include "io/input_file.hpp"
 #include "scaleaxis/errors.hpp"
 
 namespace scaleaxis::io {
@@ -53,7 +52,6 @@ OutputFile::OutputFile(fs::path file) : file_(std::move(file)) {
         }
         return;
     }
-    check_is_no_input(file_);
     // "x": fails if the file exists, so two writers never share a temporary file, and what a killed one has left behind
     // is never written to.
     bool is_too_long = false;  // the name with what is appended, so that this stands alone

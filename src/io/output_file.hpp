@@ -16,8 +16,8 @@ namespace scaleaxis::io {
 
 /// A file in the making: it has a temporary name in the folder of the final one until `commit` (with `.part0`,
 /// `.part1`… appended, or these alone where that would be too long), and is removed if that is never reached. Pipes and
-/// devices are written to directly, and so is `/dev/stdout`. All functions throw a `FileError` if the disk is full, the
-/// folder cannot be written to or the file is a protected input.
+/// devices are written to directly, and so is `/dev/stdout`. All functions throw a `FileError` if the disk is full or
+/// the folder cannot be written to.
 class OutputFile {
    public:
     explicit OutputFile(std::filesystem::path file);
