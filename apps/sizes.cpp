@@ -14,6 +14,7 @@
 #include "batch.hpp"
 #include "commands.hpp"
 #include "documents.hpp"
+#include "inputs.hpp"
 #include "interrupts.hpp"
 #include "io/output_file.hpp"
 #include "options.hpp"
@@ -117,6 +118,7 @@ Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
             if (is_stdout(file)) {
                 throw InvalidOption("a .sol has its mesh beside it: write it to a file");
             }
+            check_is_no_input(*mesh);
             outputs.push_back({*mesh, source.name});
         }
     }

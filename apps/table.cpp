@@ -193,8 +193,7 @@ std::string to_csv(const std::vector<Json>& rows) {
         }
         text += '\n';
     };
-    add_line([](const std::string& name, const Json&) { return name; },
-             rows.empty() ? row_of({}, MeasuredPieces::kWhole, 0, {}, {}) : rows.front());
+    add_line([](const std::string& name, const Json&) { return name; }, rows.front());
     for (const Json& row : rows) {
         add_line([](const std::string&, const Json& value) { return csv_cell(value); }, row);
     }
@@ -249,7 +248,7 @@ Status run_table(TableOptions options, const std::stop_token& cancel) {
     std::vector<Json> rows;
     const Status worst = collect_rows(options, sources, cancel, rows);
     stop_if_requested(cancel);
-    if (rows.empty() && worst != Status::kDone) {
+    if (rows.empty()) {
         return worst;
     }
     Json document = new_document("scaleaxis.table/1");

@@ -2092,7 +2092,7 @@ TEST_F(CommandLine, SkeletonsOfFunctionsAndOfAxes) {
 }
 
 // A ball has a skeleton of one node, and so no parts.
-TEST_F(CommandLine, ATableWithoutRowsHasItsHead) {
+TEST_F(CommandLine, ATableOfPartsHasARowForABall) {
     const Arguments ball{"--implicit", "x^2+y^2+z^2-1", "--bounds", "-2,-2,-2,2,2,2", "--rows", "part", "-q"};
     const auto table = [&](const std::string& file) {
         Arguments arguments{"table", "-o", file};
@@ -2100,10 +2100,14 @@ TEST_F(CommandLine, ATableWithoutRowsHasItsHead) {
         EXPECT_EQ(run(arguments).status, 0);
         return content(folder_ / file);
     };
-    const std::string text = table("none.csv");
+    const std::string text = table("one.csv");
     EXPECT_TRUE(text.starts_with("input,label,component,part,unit,")) << text;
-    EXPECT_EQ(std::ranges::count(text, '\n'), 1);
-    EXPECT_TRUE(Json::parse(table("none.json"))["rows"].empty());
+    EXPECT_EQ(std::ranges::count(text, '\n'), 2);
+    const Json rows = Json::parse(table("one.json"))["rows"];
+    ASSERT_EQ(rows.size(), 1U);
+    EXPECT_EQ(rows[0]["part"], 0);
+    EXPECT_EQ(rows[0]["branches"], 0);
+    EXPECT_NEAR(rows[0]["area"].get<double>(), 12.57, 0.05);
 }
 
 // Of its grown balls, whose radii have been divided, a file that names none must not be taken for the union: they
