@@ -128,18 +128,6 @@ Flags vertices_of_slivers(const std::vector<Sliver>& slivers, const MedialComple
     return result;
 }
 
-// The vertices of edges with three faces or more.
-Flags vertices_of_seams(const MedialComplex& complex) {
-    const std::vector<Index> faces_at = face_counts(complex);
-    Flags result(complex.vertices.size());
-    for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-        if (faces_at[e] > 2) {
-            std::ranges::for_each(complex.edges[e], [&](Index v) { result[v] = 1; });
-        }
-    }
-    return result;
-}
-
 // Polygons at some vertices become triangles. Polygons that have two edges in common stand in the way of contractions,
 // triangles that have two are the same.
 MedialComplex with_triangles_at(const Flags& is_asked, const MedialComplex& complex) {
@@ -661,7 +649,7 @@ MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const doubl
 }
 
 MedialComplex without_short_edges_at_seams(MedialComplex complex, double part) {
-    const Flags is_in_seam = vertices_of_seams(complex);
+    const Flags is_in_seam = vertices_at_seams(complex);
     complex = with_triangles_at(Flags(complex.vertices.size(), 1), complex);
     std::vector<Index> faces;
     for (Index f = 0; f < static_cast<Index>(complex.faces.size()); ++f) {
