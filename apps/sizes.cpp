@@ -16,7 +16,6 @@
 #include "documents.hpp"
 #include "inputs.hpp"
 #include "interrupts.hpp"
-#include "io/output_file.hpp"
 #include "options.hpp"
 #include "outputs.hpp"
 #include "scaleaxis/io.hpp"
@@ -106,8 +105,7 @@ Status run_sizes(SizesCommandOptions options, const std::stop_token& cancel) {
     for (const Source& source : sources) {
         const std::string format = has_mesh ? "sol" : options.output_format;
         const fs::path file = expand(output_pattern(options.output, "sizes", false, format, "pos"), source.name, 1.0);
-        check_output(file, has_mesh ? OutputCheck(io::check_output_file)  // the mesh beside it may be that of --at
-                                    : with_format(check_sizes_output, options.output_format, "pos"));
+        check_output(file, with_format(check_sizes_output, options.output_format, "pos"));
         if (has_mesh && file.extension() != ".sol") {
             throw InvalidOption("--at writes a .sol, and not " + file.string());
         }
