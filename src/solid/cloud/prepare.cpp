@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <numbers>
-#include <numeric>
 #include <span>
 #include <string>
 #include <string_view>
@@ -14,6 +13,7 @@
 
 #include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
+#include "base/grouped.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/text.hpp"
@@ -261,21 +261,13 @@ void orient_outward(PreparedCloud& cloud, const IndexLists& parts) {
     }
 }
 
-/// Given normals: parts may be turned one by one where they are closed. Of open ones only the whole tells something.
-void turn_outward(PreparedCloud& cloud, const IndexLists& parts) {
-    const std::vector<Point> given = cloud.cloud.normals;
-    if (!cloud.report.is_open()) {
-        orient_outward(cloud, parts);
-    } else {
-        std::vector<Index> all(given.size());
-        std::iota(all.begin(), all.end(), 0);
-        if (volume(cloud, all) < 0.0) {
-            flip(cloud.cloud.normals, all);
+/// All points as one part: of an open surface only the whole tells which side is out.
+IndexLists as_one_part(std::size_t points) {
+    return grouped(1, [&](const auto& add) {
+        for (Index i = 0; i < static_cast<Index>(points); ++i) {
+            add(0, i);
         }
-    }
-    for (std::size_t i = 0; i < given.size(); ++i) {
-        cloud.report.flipped_normals += cloud.cloud.normals[i] == given[i] ? 0 : 1;
-    }
+    });
 }
 
 /// Why the arrays are no cloud at all; empty if they are.
@@ -401,7 +393,12 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
         std::ranges::transform(chosen, chosen.begin(), normalized);
         report.opposed_normals = count_opposed(tree, points, chosen);
         if (!report.are_normals_inconsistent()) {
-            turn_outward(result, connected_parts(tree, points, neighbors));
+            const std::vector<Point> before = chosen;
+            orient_outward(result,
+                           report.is_open() ? as_one_part(points.size()) : connected_parts(tree, points, neighbors));
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                report.flipped_normals += chosen[i] == before[i] ? 0 : 1;
+            }
             return;
         }
     } else {
