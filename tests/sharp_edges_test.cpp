@@ -173,15 +173,19 @@ TEST(SharpEdgesSweep, OfTurnedSquareBarsAndRingsLeaveFewSliversInTheirSeams) {
     expect_few_slivers(square_ring(), 2.0, 4, 10);
 }
 
-TEST(SharpEdges, OfBarsAndPyramidsGiveTheSameSheetsInAnyPosition) {
+TEST(SharpEdges, OfBarsPyramidsAndOctahedraGiveTheSameSheetsInAnyPosition) {
     const TriangleMesh pyramid{{{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}, {0, 0, 1.6}},
                                {{0, 2, 1}, {0, 3, 2}, {0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}}};
+    const TriangleMesh octahedron{
+        {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}},
+        {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}, {1, 0, 5}, {2, 1, 5}, {3, 2, 5}, {0, 3, 5}}};
     for (std::uint64_t seed = 1; seed <= 12; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));
         Random random(seed);
         const Similarity turned = random_turn(random);
         EXPECT_EQ(axis_of(*mesh_solid(moved(square_bar(5.0), turned)), 1.1, 0.01).complex.sheets, 12);
         EXPECT_EQ(axis_of(*mesh_solid(moved(pyramid, turned)), 1.1, 0.01).complex.sheets, 8);
+        EXPECT_EQ(axis_of(*mesh_solid(moved(octahedron, turned)), 1.1, 0.01).complex.sheets, 12);
     }
 }
 

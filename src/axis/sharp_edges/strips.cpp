@@ -76,10 +76,10 @@ class Strips {
           curves_(curve_edges(complex)),
           neighbors_(grouped_both_ways(complex.vertices.size(), complex.edges)),
           tree_(build_point_tree(complex.vertices)) {
-        const std::vector<Index> faces_at = face_counts(complex);
-        for (std::size_t e = 0; e < faces_at.size(); ++e) {
-            if (faces_at[e] == 1) {
-                border_.insert(complex.edges[e]);
+        const IndexLists faces_at = faces_at_edges(complex);
+        for (std::size_t e = 0; e < complex.edges.size(); ++e) {
+            if (faces_at[e].size() == 1) {
+                border_.emplace(complex.edges[e], faces_at[e][0]);
             }
         }
     }
@@ -176,6 +176,7 @@ class Strips {
 
     // A line as a point sees it: which place is nearest, how far it is, and how far the planes on both sides of it are.
     struct View {
+        Point place;
         double position;
         double away;
         double nearer;
@@ -186,7 +187,23 @@ class Strips {
         const auto [place, position] = nearest_on(line, p);
         const auto& [n, m] = line.normals[line.part_at(position)];
         const auto [nearer, farther] = std::minmax({dot(n, place - p), dot(m, place - p)});
-        return {position, distance(p, place), nearer, farther};
+        return {place, position, distance(p, place), nearer, farther};
+    }
+
+    // Of a step along an edge of the complex, below a place on the line. An edge of one face is the near border of a
+    // sheet unless that face lies towards the place: the strip would fold over it.
+    double cost_of_side(const std::array<Index, 2>& edge, const Point& place) const {
+        const auto face = border_.find(edge);
+        if (face == border_.end()) {
+            return kInnerCost;
+        }
+        const Point& from = complex_.vertices[edge[0]];
+        const Point along = complex_.vertices[edge[1]] - from;
+        const auto across = [&](const Point& to) { return cross(cross(along, to - from), along); };
+        const Point inward = across(center_of_face(complex_, face->second));
+        const Point outward = across(place);
+        const double size = norm(inward) * norm(outward);
+        return size > 0.0 ? 1.0 + (kInnerCost - 1.0) * std::max(0.0, dot(inward, outward) / size) : 1.0;
     }
 
     // Through the complex, along the line, from a foot of the one end to one of the other; along the border rather than
@@ -207,7 +224,7 @@ class Strips {
             // A step across the middle of a loop would cut it short.
             const double step = std::max(distance(complex_.vertices[v], complex_.vertices[next]),
                                          std::abs(view.position - view_of(v).position));
-            const double factor = border_.contains({std::min(v, next), std::max(v, next)}) ? 1.0 : kInnerCost;
+            const double factor = cost_of_side({std::min(v, next), std::max(v, next)}, view.place);
             return std::max(view.away, view_of(v).away) > reach
                        ? kInfinity
                        : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
@@ -340,10 +357,10 @@ class Strips {
     SharpEdgeStatistics& statistics_;
     std::vector<std::array<Index, 2>> curves_;
     IndexLists neighbors_;
-    PointTree tree_;                         // of the vertices as given
-    std::set<std::array<Index, 2>> border_;  // edges of one face, as given
-    std::map<Index, Corner> corners_;        // by the numbers of ends
-    Index first_cut_ = 0;                    // the least number of an end that is no corner
+    PointTree tree_;                                // of the vertices as given
+    std::map<std::array<Index, 2>, Index> border_;  // edges of one face, as given, and that face
+    std::map<Index, Corner> corners_;               // by the numbers of ends
+    Index first_cut_ = 0;                           // the least number of an end that is no corner
 };
 
 }  // namespace
