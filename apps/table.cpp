@@ -141,7 +141,7 @@ std::vector<Json> rows_of(const TableOptions& options, Source source, const List
             ? skeleton(complex, *input.solid, skeleton_options, execution(0.8, 0.9))
             : skeleton(complex, BallUnion(scaled(axis.balls, options.scale)), skeleton_options, execution(0.8, 0.9));
     auto [surface, bulging] = surface_of(input, *axis.kept_samples, execution(0.9, 0.9));
-    surface = with_short_edges(std::move(surface), kEdge * axis.diagonal);
+    surface = with_short_edges(std::move(surface), kEdge * axis.diagonal, execution(0.9, 0.9));
     std::vector<Measures> all;
     if (input.solid->knows_nearest()) {
         const std::vector<double> thickness =

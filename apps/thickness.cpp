@@ -251,12 +251,12 @@ SourceResult run_source(const ThicknessCommandOptions& options, const Source& so
     const bool is_axis = is_axis_file(options, source);
     MeasuredSolid subject = measured_solid(options, source, listener);
     Stopwatch watch;
+    const Execution execution = listener.execution({0.9, 1.0});
     if (options.edge > 0.0) {
         Box box;
         std::ranges::for_each(subject.surface.vertices, [&](const Point& p) { box.extend(p); });
-        subject.surface = with_short_edges(std::move(subject.surface), options.edge * box.diagonal());
+        subject.surface = with_short_edges(std::move(subject.surface), options.edge * box.diagonal(), execution);
     }
-    const Execution execution = listener.execution({0.9, 1.0});
     const Thickness thickness(subject.axis, options.thickness);
     const std::vector<PointThickness> found =
         subject.solid ? thickness.at_surface(subject.surface.vertices, *subject.solid, execution)

@@ -154,6 +154,7 @@ TEST(Progress, OfAxes) {
                                    .shape = surface,
                                    .axes = {{.complex = complex, .surface = {}, .statistics = {}}},
                                    .statistics = {}};
+    expect_silent("with_short_edges", [&](const Execution& e) { with_short_edges(torus_mesh(1.0, 0.4, 20), 0.1, e); });
     expect_silent("view_data", [&](const Execution& e) { view_data(viewed_torus, e); });
 }
 
@@ -245,6 +246,25 @@ TEST(Cancellation, IsNoticedWhereGigabytesAreMoved) {
         std::vector<std::vector<Point>> parts(2);
         join(parts);
     });
+}
+
+// However few pieces the range is divided into.
+TEST(Cancellation, EndsALoopAfterTheCallsThatHaveBegun) {
+    constexpr int kGrain = 4;
+    std::stop_source stop;
+    int calls = 0;
+    const auto loop = [&] {
+        for_each_index(
+            100'000,
+            [&](int) {
+                if (++calls == 10) {
+                    stop.request_stop();
+                }
+            },
+            kGrain);
+    };
+    EXPECT_THROW(in_arena({.threads = 1, .cancel = stop.get_token()}, loop), Cancelled);
+    EXPECT_LE(calls, 10 + kGrain);
 }
 
 }  // namespace

@@ -685,6 +685,9 @@ TEST(WithShortEdges, DividesTheSameSurface) {
     EXPECT_NEAR(report.volume, 0.6, 1e-12);
     EXPECT_EQ(report.reversed_triangles, 0);
     EXPECT_THROW(with_short_edges(coarse, 0.0), InvalidOption);
+    for (const double length : {1e-4, 1e-9, 1e-300}) {
+        EXPECT_THROW(with_short_edges(coarse, length), InvalidOption) << length;
+    }
 }
 
 TEST(UnresolvedThickness, IsThatOfWallsThinnerThanTwoVoxelsAcross) {

@@ -138,8 +138,8 @@ SCALEAXIS_EXPORT std::optional<Diagnostic> unresolved_thickness(const TriangleMe
                                                                 const std::array<Point, 3>& steps);
 
 /// The same surface with no edge longer than a length: edges are halved as often as it takes. The vertices given come
-/// first. \param length > 0 \throws InvalidOption (also if it took more than 1e8 triangles)
-SCALEAXIS_EXPORT TriangleMesh with_short_edges(TriangleMesh mesh, double length);
+/// first. \param length > 0 \throws InvalidOption (also if it took more than 2e7 triangles), UnusableInput, Cancelled
+SCALEAXIS_EXPORT TriangleMesh with_short_edges(TriangleMesh mesh, double length, const Execution& execution = {});
 
 /// A mesh with vertices on the boundary of a solid, whose volume is that of the solid more nearly: edges that the
 /// boundary bulges away from are halved, and go through a point beyond it by a third of the distance, so that on both

@@ -85,7 +85,8 @@ auto in_arena(const Execution& execution, Work&& work) {
     return (*arena).execute(run);
 }
 
-/// Calls `body(i)` for `0 ≤ i < count`, in parallel; one after the other where the work is too small to share.
+/// Calls `body(i)` for `0 ≤ i < count`, in parallel; one after the other where the work is too small to share. Asks
+/// after every `grain` calls whether it is cancelled.
 template <class Size, class Body>
 void for_each_index(Size count, const Body& body, Size grain = 1024) {
     if (count <= grain) {
@@ -95,8 +96,10 @@ void for_each_index(Size count, const Body& body, Size grain = 1024) {
         return;
     }
     tasks::parallel_for(tasks::blocked_range<Size>(0, count, grain), [&](const tasks::blocked_range<Size>& range) {
-        for (Size i = range.begin(); i != range.end(); ++i) {
-            body(i);
+        for (Size i = range.begin(); i != range.end() && !tasks::is_current_task_group_canceling();) {
+            for (const Size end = i + std::min<Size>(grain, range.end() - i); i != end; ++i) {
+                body(i);
+            }
         }
     });
     stop_if_cancelled();

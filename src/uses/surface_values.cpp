@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <span>
 #include <string>
@@ -27,7 +28,8 @@ namespace {
 // of a cylinder with 39 edges around, whose volume 0.4 % are missing to.
 constexpr double kLeastBulge = 0.02;
 
-constexpr std::size_t kMostTriangles = 100'000'000;
+// Of a mesh with short edges. While it is made it takes 2 GB, and to measure it takes minutes.
+constexpr double kMostTriangles = 2e7;
 
 // The boundary of a mask is known to half a voxel, so that a wall of two voxels may be thinner or thicker by half.
 constexpr double kResolvedVoxels = 2.0;
@@ -221,20 +223,32 @@ std::optional<Diagnostic> unresolved_thickness(const TriangleMesh& surface, std:
     return Diagnostic{"image.unresolved_thickness", text.str()};
 }
 
-TriangleMesh with_short_edges(TriangleMesh mesh, double length) {
+TriangleMesh with_short_edges(TriangleMesh mesh, double length, const Execution& execution) {
     require(length > 0.0, "the length of edges must be positive");
     check_triangles(mesh);
-    while (true) {
-        const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
-            return squared_distance(mesh.vertices[a], mesh.vertices[b]) > length * length;
-        });
-        if (edges.empty()) {
-            return mesh;
+    const auto require_few = [](double triangles) {
+        require(triangles <= kMostTriangles, "edges so short take more than 2e7 triangles: choose a larger length");
+    };
+    return in_arena(execution, [&] {
+        while (true) {
+            const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
+                return squared_distance(mesh.vertices[a], mesh.vertices[b]) > length * length;
+            });
+            if (edges.empty()) {
+                return std::move(mesh);
+            }
+            // No triangle with such edges is larger than the equilateral one, and each edge that is halved makes one
+            // more at least.
+            double area = 0.0;
+            for (const std::array<Index, 3>& triangle : mesh.triangles) {
+                area += triangle_area(mesh, triangle);
+            }
+            require_few(area / (0.25 * std::numbers::sqrt3 * length * length));
+            require_few(static_cast<double>(mesh.triangles.size() + edges.size()));
+            stop_if_cancelled();
+            halve(mesh, edges);
         }
-        halve(mesh, edges);
-        require(mesh.triangles.size() <= kMostTriangles,
-                "edges so short take more than 1e8 triangles: choose a larger length");
-    }
+    });
 }
 
 TriangleMesh with_bulging_edges(TriangleMesh mesh, const Solid& solid, const Execution& execution) {

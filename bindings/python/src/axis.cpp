@@ -254,7 +254,9 @@ void bind_axis(nb::module_& m) {
         }));
     });
     m.def("with_short_edges", [](const PointsIn& vertices, const RowsIn<3>& triangles, double length) {
-        return fields_of(unlocked([&] { return with_short_edges(mesh_of(vertices, triangles), length); }));
+        return fields_of(run({}, [&](const Execution& execution) {
+            return with_short_edges(mesh_of(vertices, triangles), length, execution);
+        }));
     });
     m.def("unresolved_thickness",
           [](const PointsIn& vertices, const RowsIn<3>& triangles, const DoublesIn& values, const PointsIn& steps) {

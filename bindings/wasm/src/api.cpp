@@ -241,7 +241,8 @@ void thickness_into(Answer& answer, const Call& call) {
     Box box;
     std::ranges::for_each(found.surface.vertices, [&](const Point& p) { box.extend(p); });
     if (call.options.edge > 0.0) {
-        found.surface = with_short_edges(std::move(found.surface), call.options.edge * box.diagonal());
+        found.surface = with_short_edges(std::move(found.surface), call.options.edge * box.diagonal(),
+                                         part_of(call.execution, kAxis, kAxis));
     }
     const AxisAtScale& axis = found.first();
     append_to(found.costs, axis.costs);

@@ -114,7 +114,8 @@ class SizeSearch {
         // No ball in the solid has half this radius and more; as large ones outside are next to a wall of the solid.
         const Point sides = solid.bounds().max - solid.bounds().min;
         most_radius_ = std::min({0.5 * options.elements_across * most_, sides.x, sides.y, sides.z});
-        data_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), WallOptions{}.edge * diagonal);
+        data_.surface =
+            with_short_edges(with_delaunay_faces(std::move(surface)), WallOptions{}.edge * diagonal, execution);
     }
 
     std::shared_ptr<const SizeData> run() && {

@@ -94,7 +94,7 @@ class WallSearch {
           execution_(execution),
           diagonal_(solid.bounds().diagonal()),
           slope_(cosine_of_degrees(0.5 * options.angle)) {
-        walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_);
+        walls_.surface = with_short_edges(with_delaunay_faces(std::move(surface)), options.edge * diagonal_, execution);
         walls_.tolerance = kValueTolerance;
         if (options.min_wall || options.max_wall) {
             walls_.wall_cap = std::max(kCapLimits * options.min_wall.value_or(0.0),
