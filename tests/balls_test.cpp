@@ -176,6 +176,9 @@ TEST(Balls, Scale) {
     const Balls balls{{{1.0, 2.0, 3.0}, 0.5}, {{-1.0, 0.0, 0.0}, 2.0}};
     EXPECT_EQ(scaled(balls, 1.5), (Balls{{{1.0, 2.0, 3.0}, 0.75}, {{-1.0, 0.0, 0.0}, 3.0}}));
     EXPECT_TRUE(scaled({}, 2.0).empty());
+    for (const double factor : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+        EXPECT_THROW(scaled(balls, factor), InvalidOption) << factor;
+    }
 }
 
 TEST(Balls, HaveABox) {
@@ -204,6 +207,9 @@ TEST(Balls, MoveByAPartOfTheirRadius) {
     EXPECT_TRUE(same_bytes(perturbed(balls, 0.01, 7), moved_once));
     EXPECT_FALSE(same_bytes(perturbed(balls, 0.01, 8), moved_once));
     EXPECT_TRUE(same_bytes(perturbed(balls, 0.0, 7), balls));
+    for (const double amount : {-1.0, std::nan(""), HUGE_VAL}) {
+        EXPECT_THROW(perturbed(balls, amount, 7), InvalidOption) << amount;
+    }
     // A ball's way depends on its position in the array alone.
     const Balls first(balls.begin(), balls.begin() + 10);
     EXPECT_TRUE(same_bytes(perturbed(first, 0.01, 7), Balls(moved_once.begin(), moved_once.begin() + 10)));

@@ -216,6 +216,9 @@ TEST(Centerlines, PathIsTheShortestWay) {
     EXPECT_EQ(back.nodes.front(), path.nodes.back());
     EXPECT_EQ(path_between(fork(), {0, 0, 0}, {0, 0, 0.1}).nodes.size(), 1u);
     EXPECT_THROW(path_between({}, {0, 0, 0}, {1, 0, 0}), UnusableInput);
+    Skeleton point;
+    point.nodes = {{0, 0, 0}};
+    EXPECT_THROW(nearest_node(point, {std::nan(""), 0, 0}), InvalidOption);
     Skeleton apart = curves_of({{0, 0, 0}, {1, 0, 0}, {5, 0, 0}, {6, 0, 0}}, {{0, 1}, {2, 3}});
     apart.node_components = {0, 0, 1, 1};
     EXPECT_THROW(path_between(apart, {0, 0, 0}, {6, 0, 0}), UnusableInput);

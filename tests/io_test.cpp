@@ -1374,6 +1374,24 @@ TEST_F(Io, KnowsWhatAFileHolds) {
 // Writing that fails
 // ---------------------------------------------------------------------------------------------------------------------
 
+TEST_F(Io, WritesNothingThatItWouldNotRead) {
+    const double nan = std::nan("");
+    TriangleMesh without_vertex{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}};
+    TriangleMesh not_finite{{{0, 0, 0}, {1, 0, 0}, {0, nan, 0}}, {{0, 1, 2}}};
+    for (const char* name : {"a.ply", "a.obj", "a.off", "a.stl"}) {
+        EXPECT_THROW(write_mesh(path(name), without_vertex), UnusableInput) << name;
+        EXPECT_THROW(write_mesh(path(name), not_finite), UnusableInput) << name;
+    }
+    for (const char* name : {"a.ply", "a.vtp", "a.glb"}) {
+        EXPECT_THROW(write_surface(path(name), without_vertex, {{{"value", {1, 2, 3}}}}), UnusableInput) << name;
+        EXPECT_THROW(write_surface(path(name), not_finite, {{{"value", {1, 2, 3}}}}), UnusableInput) << name;
+    }
+    for (const Ball& ball : {Ball{{nan, 0, 0}, 1}, Ball{{0, 0, 0}, -1}, Ball{{0, 0, 0}, nan}}) {
+        EXPECT_THROW(write_balls(path("a.txt"), std::span(&ball, 1)), UnusableInput);
+    }
+    EXPECT_TRUE(names().empty());
+}
+
 TEST_F(Io, RefusesNamesOfNoFormat) {
     const std::vector<Ball> balls{{{0, 0, 0}, 1}};
     expect_error([&] { write_balls(path("a.stl"), balls); }, {"a.stl", ".ply", ".woff"});

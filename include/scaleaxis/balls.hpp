@@ -23,12 +23,12 @@ namespace scaleaxis::inline v1 {
 SCALEAXIS_EXPORT std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution = {});
 
 /// The balls with all radii multiplied by a factor.
-/// \param factor > 0
+/// \param factor > 0 \throws InvalidOption
 SCALEAXIS_EXPORT std::vector<Ball> scaled(std::span<const Ball> balls, double factor);
 
 /// The balls in general position: every centre is moved in a direction that depends on the seed and the ball's position
 /// in the array alone.
-/// \param amount the largest move, relative to the ball's radius; ≥ 0
+/// \param amount the largest move, relative to the ball's radius; ≥ 0 \throws InvalidOption
 SCALEAXIS_EXPORT std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uint64_t seed);
 
 /// Why the first that is none is no ball: a coordinate that is not finite, a radius that is not positive and finite.

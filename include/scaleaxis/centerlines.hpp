@@ -60,7 +60,8 @@ struct BranchGeometry {
 
 SCALEAXIS_EXPORT BranchGeometry branch_geometry(const Skeleton& skeleton, Index branch);
 
-/// The node nearest to a place, as for `Skeleton::root`. \throws UnusableInput if there is none
+/// The node nearest to a place, as for `Skeleton::root`. \throws UnusableInput if there is none, InvalidOption if the
+/// place is not finite
 SCALEAXIS_EXPORT Index nearest_node(const Skeleton& skeleton, const Point& place);
 
 /// The shortest way along the curves between the nodes nearest to two places, as a skeleton of one branch from the

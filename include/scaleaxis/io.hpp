@@ -146,7 +146,7 @@ SCALEAXIS_EXPORT std::optional<double> stored_scale(const FileBytes& file);
 SCALEAXIS_EXPORT Image read_image(const std::filesystem::path& file);
 SCALEAXIS_EXPORT Image read_image(const FileBytes& file);
 
-/// \throws FileError
+/// \throws FileError, UnusableInput as `check_balls`
 SCALEAXIS_EXPORT void write_balls(const std::filesystem::path& file, std::span<const Ball> balls,
                                   std::string_view format = {});
 
@@ -196,7 +196,7 @@ SCALEAXIS_EXPORT void check_axis_output(const std::filesystem::path& file, std::
 SCALEAXIS_EXPORT void check_filtration_output(const std::filesystem::path& file, std::string_view format = {});
 
 /// A mesh to PLY (binary), OBJ, OFF or STL (text, which has no vertices that triangles share).
-/// \throws FileError
+/// \throws FileError, UnusableInput if a triangle has a vertex that is not there, or a vertex is not finite
 SCALEAXIS_EXPORT void write_mesh(const std::filesystem::path& file, const TriangleMesh& mesh,
                                  std::string_view format = {});
 SCALEAXIS_EXPORT void check_mesh_output(const std::filesystem::path& file, std::string_view format = {});  ///< as above
@@ -245,7 +245,7 @@ SCALEAXIS_EXPORT void write_sizes_at(const std::filesystem::path& file, const Si
 
 /// A surface cut into the parts that belong to the branches of a skeleton, to binary PLY: vertices with `node`,
 /// `branch` and the colour of the branch. \param nodes of its vertices, see `nearest_nodes` \throws FileError,
-/// InvalidOption if there are not as many nodes as vertices
+/// InvalidOption if there are not as many nodes as vertices, UnusableInput as `write_mesh`
 SCALEAXIS_EXPORT void write_parts(const std::filesystem::path& file, const TriangleMesh& surface,
                                   const Skeleton& skeleton, std::span<const Index> nodes, std::string_view format = {});
 SCALEAXIS_EXPORT void check_parts_output(const std::filesystem::path& file,
@@ -253,7 +253,8 @@ SCALEAXIS_EXPORT void check_parts_output(const std::filesystem::path& file,
 
 /// A mesh with values of its vertices to PLY (binary), VTP or GLB (in single precision), coloured by the first of them
 /// from red, the least value, over yellow and green to blue, the largest.
-/// \param values one at least \throws FileError, InvalidOption as `write_axis`
+/// \param values one at least \throws FileError, InvalidOption as `write_axis`, UnusableInput as
+/// `write_mesh`
 SCALEAXIS_EXPORT void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh,
                                     std::span<const VertexValues> values, std::string_view format = {});
 SCALEAXIS_EXPORT void check_surface_output(const std::filesystem::path& file,

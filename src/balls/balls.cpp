@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "base/faults.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/text.hpp"
@@ -98,6 +99,7 @@ std::vector<Ball> inner_balls(const Samples& samples, const Execution& execution
 }
 
 std::vector<Ball> scaled(std::span<const Ball> balls, double factor) {
+    require(factor > 0.0 && std::isfinite(factor), "the factor of radii must be a positive number");
     std::vector<Ball> result(balls.begin(), balls.end());
     for (Ball& ball : result) {
         ball.radius *= factor;
@@ -106,6 +108,7 @@ std::vector<Ball> scaled(std::span<const Ball> balls, double factor) {
 }
 
 std::vector<Ball> perturbed(std::span<const Ball> balls, double amount, std::uint64_t seed) {
+    require(amount >= 0.0 && std::isfinite(amount), "the part of a radius to move by must be 0 or a positive number");
     std::vector<Ball> result(balls.begin(), balls.end());
     for (std::size_t i = 0; i < result.size(); ++i) {
         result[i].center = result[i].center + (amount * result[i].radius) * random_direction(seed, i);

@@ -28,6 +28,7 @@
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/centerlines.hpp"
 #include "scaleaxis/cloud.hpp"
+#include "spatial/mesh_parts.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -621,6 +622,7 @@ Image read_image(const path& file) { return read_from(file, image_of, is_head_en
 Image read_image(const FileBytes& file) { return read_from(file, image_of); }
 
 void write_balls(const path& file, std::span<const Ball> balls, std::string_view format) {
+    check_balls(balls);
     write(file, format, &Format::write_balls, balls);
 }
 
@@ -644,11 +646,13 @@ void write_filtration(const path& file, const Filtration& filtration, std::strin
 }
 
 void write_mesh(const path& file, const TriangleMesh& mesh, std::string_view format) {
+    check_mesh(mesh);
     write(file, format, &Format::write_mesh, mesh);
 }
 
 void write_surface(const path& file, const TriangleMesh& mesh, std::span<const VertexValues> values,
                    std::string_view format) {
+    check_mesh(mesh);
     check_vertex_values(mesh.vertices.size(), values);
     require(!values.empty() && !mesh.vertices.empty(), "a coloured surface needs vertices, and a value of each");
     write(file, format, &Format::write_surface, mesh, values);
@@ -670,6 +674,7 @@ void write_parts(const path& file, const TriangleMesh& surface, const Skeleton& 
     require(nodes.size() == surface.vertices.size(), "there are " + std::to_string(nodes.size()) + " nodes for " +
                                                          std::to_string(surface.vertices.size()) +
                                                          " vertices of a surface");
+    check_mesh(surface);
     write(file, format, &Format::write_parts, surface, skeleton, nodes);
 }
 

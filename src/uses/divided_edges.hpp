@@ -14,9 +14,6 @@ namespace scaleaxis::inline v1 {
 
 using MeshEdge = std::array<Index, 2>;  // the smaller vertex first
 
-/// \throws UnusableInput if a triangle has a vertex that the mesh does not have
-void check_triangles(const TriangleMesh& mesh);
-
 /// The edges of a mesh that are wanted, each once, in order.
 template <class Wanted>
 std::vector<MeshEdge> edges_of(const TriangleMesh& mesh, const Wanted& is_wanted) {

@@ -11,6 +11,7 @@
 #include "base/parallel.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "uses/divided_edges.hpp"
 
 namespace scaleaxis::inline v1 {

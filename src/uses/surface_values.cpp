@@ -59,15 +59,6 @@ double part_below(std::array<double, 3> values, double limit) {
 
 }  // namespace
 
-void check_triangles(const TriangleMesh& mesh) {
-    const auto count = static_cast<Index>(mesh.vertices.size());
-    for (const std::array<Index, 3>& triangle : mesh.triangles) {
-        if (std::ranges::any_of(triangle, [&](Index v) { return v < 0 || v >= count; })) {
-            throw UnusableInput("a triangle has a vertex that the mesh does not have");
-        }
-    }
-}
-
 void divide(TriangleMesh& mesh, const std::vector<MeshEdge>& edges, const std::vector<Point>& points) {
     const auto first = static_cast<Index>(mesh.vertices.size());
     append(mesh.vertices, points);

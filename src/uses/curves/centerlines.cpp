@@ -17,6 +17,7 @@
 #include "base/numbers.hpp"
 #include "base/text.hpp"
 #include "base/vectors.hpp"
+#include "spatial/extent.hpp"
 #include "uses/curves/ways_out.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -320,6 +321,7 @@ Index nearest_node(const Skeleton& skeleton, const Point& place) {
     if (skeleton.nodes.empty()) {
         throw UnusableInput("a skeleton without nodes has none that is nearest to a place");
     }
+    require(is_usable(place), "a place on a skeleton must have finite coordinates");
     const auto away = [&](const Point& node) { return squared_distance(node, place); };
     return static_cast<Index>(std::ranges::min_element(skeleton.nodes, {}, away) - skeleton.nodes.begin());
 }
