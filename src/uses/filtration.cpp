@@ -256,10 +256,6 @@ void require_order(bool condition, const std::string& message) {
 Filtration filtration(MedialComplex complex, const FiltrationOptions& options, const Execution& execution) {
     return in_arena(execution, [&] {
         check(complex);
-        if (complex.scale > 1.0) {
-            throw UnusableInput("the axis is that at scale " + to_text(complex.scale) +
-                                ": a filtration is made of the axis at scale 1");
-        }
         report(execution, kFiltrationStage, 0.0);
         Filtration result;
         result.complex = std::move(complex);
