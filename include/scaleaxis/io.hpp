@@ -253,8 +253,7 @@ SCALEAXIS_EXPORT void check_parts_output(const std::filesystem::path& file,
 
 /// A mesh with values of its vertices to PLY (binary), VTP or GLB (in single precision), coloured by the first of them
 /// from red, the least value, over yellow and green to blue, the largest.
-/// \param values one at least \throws FileError, InvalidOption as `write_axis`, UnusableInput as
-/// `write_mesh`
+/// \param values one at least \throws FileError, InvalidOption as `write_axis`, UnusableInput as `write_mesh`
 SCALEAXIS_EXPORT void write_surface(const std::filesystem::path& file, const TriangleMesh& mesh,
                                     std::span<const VertexValues> values, std::string_view format = {});
 SCALEAXIS_EXPORT void check_surface_output(const std::filesystem::path& file,

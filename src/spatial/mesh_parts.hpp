@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <utility>
 
 #include "base/disjoint_sets.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/geometry.hpp"
+#include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
 
@@ -28,32 +28,41 @@ inline double triangle_area(const TriangleMesh& mesh, const std::array<Index, 3>
     return triangle_area(mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
 }
 
-/// \throws UnusableInput if a triangle has a vertex that the mesh does not have
-inline void check_triangles(const TriangleMesh& mesh) {
-    const auto count = static_cast<Index>(mesh.vertices.size());
+/// "mesh.not_finite": that a vertex has a coordinate that is not usable.
+inline Diagnostic bad_vertex(Index vertex) {
+    return {"mesh.not_finite", "vertex " + std::to_string(vertex) + " (counted from 0) " + kUnusableCoordinate,
+            "vertex", vertex};
+}
+
+/// "mesh.no_such_vertex": the first triangle with a vertex that the mesh does not have; empty if there is none.
+inline Diagnostic find_bad_triangle(const TriangleMesh& mesh) {
+    const auto vertex_count = static_cast<Index>(mesh.vertices.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        if (std::ranges::any_of(mesh.triangles[t], [&](Index v) { return v < 0 || v >= count; })) {
-            throw UnusableInput(Diagnostic{"mesh.no_vertex",
-                                           "triangle " + std::to_string(t + 1) + " of " +
-                                               std::to_string(mesh.triangles.size()) +
-                                               " has a vertex that the mesh does not have",
-                                           "triangle", static_cast<std::int64_t>(t + 1)});
+        for (const Index v : mesh.triangles[t]) {
+            if (v < 0 || v >= vertex_count) {
+                return {"mesh.no_such_vertex",
+                        "triangle " + std::to_string(t) + " (counted from 0) refers to vertex " + std::to_string(v) +
+                            ", which does not exist",
+                        "triangle", static_cast<std::int64_t>(t)};
+            }
         }
+    }
+    return {};
+}
+
+/// \throws UnusableInput with `find_bad_triangle`, if that is not empty
+inline void check_triangles(const TriangleMesh& mesh) {
+    if (Diagnostic fault = find_bad_triangle(mesh); !fault.empty()) {
+        throw UnusableInput(std::move(fault));
     }
 }
 
-/// \throws UnusableInput as `check_triangles`, and if a vertex is not finite
+/// \throws UnusableInput as `check_triangles`, and with `bad_vertex` if a vertex is not finite
 inline void check_mesh(const TriangleMesh& mesh) {
     check_triangles(mesh);
-    for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-        const Point& p = mesh.vertices[v];
-        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
-            throw UnusableInput(Diagnostic{"mesh.not_finite",
-                                           "vertex " + std::to_string(v + 1) + " of " +
-                                               std::to_string(mesh.vertices.size()) +
-                                               " has a coordinate that is not a finite number",
-                                           "vertex", static_cast<std::int64_t>(v + 1)});
-        }
+    const auto bad = std::ranges::find_if_not(mesh.vertices, is_finite);
+    if (bad != mesh.vertices.end()) {
+        throw UnusableInput(bad_vertex(static_cast<Index>(bad - mesh.vertices.begin())));
     }
 }
 

@@ -220,6 +220,10 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length, const Execution&
     const auto require_few = [](double triangles) {
         require(triangles <= kMostTriangles, "edges so short take more than 2e7 triangles: choose a larger length");
     };
+    double area = 0.0;
+    for (const std::array<Index, 3>& triangle : mesh.triangles) {
+        area += triangle_area(mesh, triangle);
+    }
     return in_arena(execution, [&] {
         while (true) {
             const std::vector<MeshEdge> edges = edges_of(mesh, [&](Index a, Index b) {
@@ -230,10 +234,6 @@ TriangleMesh with_short_edges(TriangleMesh mesh, double length, const Execution&
             }
             // No triangle with such edges is larger than the equilateral one, and each edge that is halved makes one
             // more at least.
-            double area = 0.0;
-            for (const std::array<Index, 3>& triangle : mesh.triangles) {
-                area += triangle_area(mesh, triangle);
-            }
             require_few(area / (0.25 * std::numbers::sqrt3 * length * length));
             require_few(static_cast<double>(mesh.triangles.size() + edges.size()));
             stop_if_cancelled();

@@ -22,6 +22,7 @@
 #include "solid/mesh/triangle_edges.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
+#include "spatial/mesh_parts.hpp"
 #include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -61,21 +62,10 @@ Diagnostic find_bad_data(const TriangleMesh& mesh) {
     const auto vertex_count = static_cast<Index>(mesh.vertices.size());
     for (Index v = 0; v < vertex_count; ++v) {
         if (!is_usable(mesh.vertices[v])) {
-            return {"mesh.not_finite", "vertex " + std::to_string(v) + " (counted from 0) " + kUnusableCoordinate,
-                    "vertex", v};
+            return bad_vertex(v);
         }
     }
-    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        for (const Index v : mesh.triangles[t]) {
-            if (v < 0 || v >= vertex_count) {
-                return {"mesh.no_such_vertex",
-                        "triangle " + std::to_string(t) + " (counted from 0) refers to vertex " + std::to_string(v) +
-                            ", which does not exist",
-                        "triangle", static_cast<std::int64_t>(t)};
-            }
-        }
-    }
-    return {};
+    return find_bad_triangle(mesh);
 }
 
 double doubled_area(const std::vector<Point>& vertices, const Triangle& t) {
