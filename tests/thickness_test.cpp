@@ -243,6 +243,27 @@ TEST(Thickness, OfAPartIsNowhereLessThanThatOfItsThinnestWall) {
     }
 }
 
+// Out of a corner of three faces a ball grows by 0.5 of the way if the edge between two of them has 70.5°: by 0.502 at
+// 71°, by 0.577 at 90°.
+TEST(Thickness, OfAPlateIsThatOfItsFacesAlsoInAcuteCorners) {
+    for (const double degrees : {71.0, 72.0, 75.0, 80.0}) {
+        SCOPED_TRACE(degrees);
+        const double x = 15.0 * std::cos(degrees * std::numbers::pi / 180.0);
+        const double y = 15.0 * std::sin(degrees * std::numbers::pi / 180.0);
+        const TriangleMesh plate = test::prism({{0.0, 0.0}, {30.0, 0.0}, {30.0 + x, y}, {x, y}}, 1.5);
+        for (unsigned seed = 1; seed <= 2; ++seed) {
+            SCOPED_TRACE("seed " + std::to_string(seed));
+            test::Random random(seed);
+            const TriangleMesh turned = test::moved(plate, test::random_turn(random));
+            const auto solid = mesh_solid(turned);
+            const Thickness thickness(scale_axis(*solid, {.scales = {1.1}}).axes[0].complex);
+            for (const PointThickness& at : thickness.at_surface(with_short_edges(turned, 0.4).vertices, *solid)) {
+                ASSERT_NEAR(at.thickness, 1.5, 0.01);
+            }
+        }
+    }
+}
+
 // Balls grow all along the seams that lead out of corners, if these stay where three faces are equally near.
 TEST(Thickness, OfACornerIsThatOfItsBoxWhereTheAxisAloneTells) {
     const TriangleMesh box = box_mesh({0, 0, 0}, {2, 3, 4});

@@ -402,6 +402,8 @@ class ThicknessData {
     struct Hint {
         std::optional<Ball> foot;
         std::optional<Ball> between;
+        std::optional<Ball> start;  // of the way uphill to `top`: all points of a sphere have the same
+        Ball top;
     };
 
     PointThickness at(const Point& p, const Solid* solid, Hint& hint) const {
@@ -412,7 +414,11 @@ class ThicknessData {
         result.ball = touching_ball(all_, p, growth_limit(foot, p));
         hint.foot = foot;
         if (solid != nullptr && slope_ < 1.0) {
-            result.ball = uphill(*solid, result.ball, slope_);
+            if (hint.start != result.ball) {
+                hint.start = result.ball;
+                hint.top = uphill(*solid, result.ball, slope_);
+            }
+            result.ball = hint.top;
             result.thickness = 2.0 * result.ball.radius;
             return result;
         }

@@ -19,6 +19,9 @@ constexpr double kFirstStep = 1e-5;  // of the diagonal: the shortest step, for 
 
 constexpr int kDirections = 8;  // tried for a step: the corner of a box takes about six, and 2 fail on L profiles
 
+// Of weight after each plane: 95 of 100 planes take one at most, one in 1,000 more than 20.
+constexpr int kMostShifts = 64;
+
 // Never reached: on the way out of an edge a radius grows by a quarter or more with each step, and 1e5 is 1.25^52.
 constexpr int kMostSteps = 200;
 
@@ -27,6 +30,82 @@ struct Depth {
     Point place;
     double value = 0.0;
     Point gradient;
+};
+
+// The graph of offset + gradient · step.
+struct TangentPlane {
+    Point gradient;
+    double offset = 0.0;
+};
+
+// Planes, and the mean of them whose maximum within a length of the origin is least.
+class TangentPlanes {
+   public:
+    // \param enough what the maximum need not be less than
+    TangentPlanes(double length, double enough) : length_(length), enough_(enough) {}
+
+    // Moves weight from the highest plane at the maximum of the mean to the lowest one for as long as this lowers the
+    // maximum: the pairwise steps of Frank and Wolfe, whose errors fall geometrically.
+    void add(const TangentPlane& plane) {
+        planes_[count_] = plane;
+        weights_[count_] = count_ == 0 ? 1.0 : 0.0;
+        mean_ = count_ == 0 ? plane : mean_;
+        ++count_;
+        for (int k = 0; k < kMostShifts; ++k) {
+            const Point step = length_ * direction();
+            std::array<double, kDirections + 1> values{};
+            int lowest = 0;
+            int highest = -1;
+            for (int i = 0; i < count_; ++i) {
+                values[i] = planes_[i].offset + dot(planes_[i].gradient, step);
+                lowest = values[i] < values[lowest] ? i : lowest;
+                if (weights_[i] > 0.0 && (highest < 0 || values[i] > values[highest])) {
+                    highest = i;
+                }
+            }
+            const TangentPlane& a = planes_[highest];
+            const TangentPlane& b = planes_[lowest];
+            if (values[highest] - values[lowest] <= kNegligible * length_ || most() <= enough_) {
+                return;
+            }
+            const TangentPlane shifted{mean_.gradient + weights_[highest] * (b.gradient - a.gradient),
+                                       mean_.offset + weights_[highest] * (b.offset - a.offset)};
+            const double part = best_part(shifted);
+            const double weight = part * weights_[highest];
+            mean_ = {(1.0 - part) * mean_.gradient + part * shifted.gradient,
+                     (1.0 - part) * mean_.offset + part * shifted.offset};
+            weights_[lowest] += weight;
+            weights_[highest] = part < 1.0 ? weights_[highest] - weight : 0.0;
+        }
+    }
+
+    Point direction() const { return unit(mean_.gradient); }
+    double most() const { return mean_.offset + length_ * norm(mean_.gradient); }
+
+   private:
+    // The share of a plane beside the mean with which the maximum, offset + length · |gradient|, becomes least.
+    double best_part(const TangentPlane& plane) const {
+        const Point change = plane.gradient - mean_.gradient;
+        const double square = squared_norm(change);
+        if (!(square > 0.0)) {
+            return plane.offset < mean_.offset ? 1.0 : 0.0;
+        }
+        // Its derivative is 0.
+        const double middle = dot(mean_.gradient, change) / square;
+        const double apart = std::max(0.0, squared_norm(mean_.gradient) / square - middle * middle);
+        const double fall = (mean_.offset - plane.offset) / (length_ * std::sqrt(square));
+        if (std::abs(fall) >= 1.0) {
+            return fall > 0.0 ? 1.0 : 0.0;
+        }
+        return std::clamp(fall * std::sqrt(apart / (1.0 - fall * fall)) - middle, 0.0, 1.0);
+    }
+
+    double length_;
+    double enough_;
+    int count_ = 0;
+    std::array<TangentPlane, kDirections + 1> planes_;
+    std::array<double, kDirections + 1> weights_{};
+    TangentPlane mean_;
 };
 
 class Hill {
@@ -58,11 +137,12 @@ class Hill {
     };
 
     // A deeper place at the distance `length`. In a convex solid depth is concave: each place looked at bounds the
-    // depth by a plane, the tangent of its graph. A mean of these planes is kept, the one with the least maximum within
-    // `length`, and the place of this maximum is looked at next: the method of Frank and Wolfe, on the dual problem.
+    // depth by a plane, the tangent of its graph. Of all means of these planes the one with the least maximum within
+    // `length` is found, and the place of this maximum is looked at next: the method of Frank and Wolfe, on the dual
+    // problem, in its fully corrective form.
     Step step_from(const Depth& start, const Point& first_direction, double length) const {
-        Point mean = start.gradient;
-        double offset = 0.0;
+        TangentPlanes planes(length, slope_ * length);
+        planes.add({start.gradient, 0.0});
         Point direction = first_direction;
         double most = length;
         for (int k = 0; k < kDirections && most > slope_ * length; ++k) {
@@ -71,12 +151,9 @@ class Hill {
             if (gain > slope_ * length) {
                 return {next, most};
             }
-            const double next_offset = gain - length * dot(next.gradient, direction);
-            const double part = best_part(mean, offset, next.gradient, next_offset, length);
-            mean = (1.0 - part) * mean + part * next.gradient;
-            offset = (1.0 - part) * offset + part * next_offset;
-            most = offset + length * norm(mean);
-            direction = unit(mean);
+            planes.add({next.gradient, gain - length * dot(next.gradient, direction)});
+            most = planes.most();
+            direction = planes.direction();
         }
         return {std::nullopt, most};
     }
@@ -98,24 +175,6 @@ class Hill {
         const Point beside = place + kFileRounding * diagonal_ * kAside;
         const Point outwards = beside - solid_.nearest(beside).value_or(place);
         return {place, 0.0, (solid_.inside(beside) ? 1.0 : -1.0) * unit(outwards)};
-    }
-
-    // The share of plane b in the mean of two planes offset + gradient · step whose maximum over all steps of a length
-    // is least.
-    static double best_part(const Point& a, double a_offset, const Point& b, double b_offset, double length) {
-        const Point change = b - a;
-        const double square = squared_norm(change);
-        if (!(square > 0.0)) {
-            return b_offset < a_offset ? 1.0 : 0.0;
-        }
-        // The derivative of offset + length · |a + t change| is 0.
-        const double middle = dot(a, change) / square;
-        const double apart = std::max(0.0, squared_norm(a) / square - middle * middle);
-        const double fall = (a_offset - b_offset) / (length * std::sqrt(square));
-        if (std::abs(fall) >= 1.0) {
-            return fall > 0.0 ? 1.0 : 0.0;
-        }
-        return std::clamp(fall * std::sqrt(apart / (1.0 - fall * fall)) - middle, 0.0, 1.0);
     }
 
     const Solid& solid_;

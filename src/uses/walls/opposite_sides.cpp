@@ -43,7 +43,7 @@ Point nearest_within(const Solid& solid, const Point& p, double way) {
 }
 
 struct Probe {
-    Ball ball;      // the largest on the way
+    Ball ball;      // the largest on the way; of those as large the one nearest to its start
     Point nearest;  // to the end of the way
     bool is_seen = false;
 };
@@ -63,7 +63,7 @@ Probe probe(const Solid& solid, const Point& p, const Point& inwards, double len
         if (step < kSmallPart * left) {
             return result;
         }
-        if (step > result.ball.radius) {
+        if (step > (1.0 - kFileRounding) * result.ball.radius) {
             result.ball = {at, step};
         }
         left -= step;
