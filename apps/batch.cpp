@@ -202,18 +202,20 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
     return worst;
 }
 
-bool is_stored_axis(const Source& source) {
-    return !source.label && !source.file.empty() && !fs::is_directory(source.file) &&
-           reading(source.file, source.options.format, [](const fs::path& path) { return file_kind(path); }) ==
-               FileKind::kAxis;
-}
-
 std::vector<Source> sources_of_one(const fs::path& input, const SourceOptions& options) {
     std::vector<Input> inputs;
     if (!input.empty()) {
         inputs.push_back({input, {}});
     }
-    return sources_of(inputs, options);
+    std::vector<Source> sources = sources_of(inputs, options);
+    for (Source& source : sources) {
+        if (!source.images && !source.meshes && !source.file.empty() && !fs::is_directory(source.file)) {
+            source.readable = std::make_shared<const ReadableFile>(source.file, options.format);
+            source.is_axis = !options.load.kind &&
+                             reading(source, [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
+        }
+    }
+    return sources;
 }
 
 void check_all_outputs(std::vector<Output> outputs, CommonOptions& options) {

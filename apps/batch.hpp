@@ -69,11 +69,8 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
                    const CommonOptions& options, Json head, const std::stop_token& cancel,
                    const std::function<SourceResult(std::size_t, const Listener&)>& work);
 
-/// Is a source an axis that is there already?
-bool is_stored_axis(const Source& source);
-
-/// The sources of a command that takes one input, several with `--each-label` or `--each-object`.
-/// \param input empty: none \throws InvalidOption
+/// The sources of a command that takes one input, a solid or an axis that is there already, several with
+/// `--each-label` or `--each-object`. \param input empty: none \throws InvalidOption
 std::vector<Source> sources_of_one(const std::filesystem::path& input, const SourceOptions& options);
 
 /// \throws InvalidOption if an output is the same as another one

@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 constexpr double kShareOfAxis = 0.6;  // of the time
 
 struct FiltrationRunOptions {
-    std::optional<fs::path> input;
+    fs::path input;
     SourceOptions source;
     std::string output;
     std::string output_format;
@@ -50,14 +50,8 @@ struct FiltrationRunOptions {
     CommonOptions common;
 };
 
-bool is_stored_axis(const FiltrationRunOptions& options) {
-    return options.input && options.source.format.empty() && *options.input != "-" &&
-           fs::is_regular_file(*options.input) && file_kind(*options.input) == FileKind::kAxis;
-}
-
 Source single_source(const FiltrationRunOptions& options) {
-    const std::vector<Source> sources =
-        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
+    const std::vector<Source> sources = sources_of_one(options.input, options.source);
     if (sources.size() > 1) {
         throw InvalidOption("one solid is needed, and these are " + std::to_string(sources.size()) +
                             ": name one file, and one label or object in it");
@@ -132,8 +126,7 @@ void print_levels(std::ostream& out, const std::vector<FiltrationLevel>& levels)
     }
 }
 
-Status run_filtration_of(FiltrationRunOptions options, const Source& source, bool is_axis,
-                         const std::stop_token& cancel) {
+Status run_filtration_of(FiltrationRunOptions options, const Source& source, const std::stop_token& cancel) {
     const fs::path output =
         checked_output(output_pattern(options.output, "filtration", false, options.output_format), source.name, 1.0,
                        options.common.statistics, with_format(check_filtration_output, options.output_format));
@@ -160,7 +153,8 @@ Status run_filtration_of(FiltrationRunOptions options, const Source& source, boo
     ProgressBar bar(source.name.filename().string(), options.common.verbosity());
     Stopwatch watch;
     FilteredSolid subject =
-        is_axis ? FilteredSolid{read_axis(*options.input), {}, {}} : subject_of(options, source, bar, cancel);
+        source.is_axis ? FilteredSolid{reading(source, [](const fs::path& path) { return read_axis(path); }), {}, {}}
+                       : subject_of(options, source, bar, cancel);
     std::vector<StageCost>& costs = subject.costs;
     watch.lap("axis");
     Filtration nested = filtration(std::move(subject.axis), options.filtration,
@@ -211,15 +205,11 @@ Status run_filtration_of(FiltrationRunOptions options, const Source& source, boo
 }
 
 Status run_filtration(const FiltrationRunOptions& options, const std::stop_token& cancel) {
-    const bool is_axis = is_stored_axis(options);
-    if (is_axis && has_sampling_options(pipeline_of(options))) {
-        throw InvalidOption("delta and sampling have no effect on an axis that is there already: leave them out");
+    const Source source = single_source(options);
+    if (source.is_axis) {
+        check_unused(options.source, "an axis that is there already", {"--format"});
     }
-    if (is_axis) {
-        check_unused(options.source, "an axis that is there already", {});
-    }
-    const Source source = is_axis ? Source{*options.input, *options.input, options.source} : single_source(options);
-    return telling_source(source, [&] { return run_filtration_of(options, source, is_axis, cancel); });
+    return telling_source(source, [&] { return run_filtration_of(options, source, cancel); });
 }
 
 }  // namespace
@@ -250,7 +240,7 @@ Command filtration_command(CommandLine program) {
                "Scale up to which to look; what is left there never vanishes", kLargestScaleRange, "S");
     add_delta_options(command, options->delta, &options->delta_range);
     add_sampling_option(command, options->sizing);
-    add_source_options(command, options->source);
+    add_source_options(command, options->source, {"--delta", "--delta-abs", "--sampling"});
     add_common_options(command, options->common);
     command.footer(
         "Examples:\n"

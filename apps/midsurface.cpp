@@ -106,10 +106,7 @@ void find_surfaces(const MedialComplex& complex, const Solid* solid, const Midsu
 
 FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path,
                                const Listener& listener) {
-    if (has_sampling_options(options.pipeline)) {
-        throw InvalidOption(options.input.string() + " is an axis: --delta and --sampling are for solids");
-    }
-    check_unused(options.source, "an axis that is there already", {"--as", "--format"});
+    check_unused(options.source, "an axis that is there already", {"--format"});
     FoundMidsurface outcome;
     Stopwatch watch;
     MedialComplex complex = read_axis(path);
@@ -205,10 +202,9 @@ Json json_of_midsurface(const Midsurface& surface) {
 
 SourceResult run_source(const MidsurfaceCommandOptions& options, const Source& source, const MidsurfaceFiles& files,
                         const Listener& listener, const std::stop_token& cancel) {
-    const bool is_axis = is_stored_axis(source);
+    const bool is_axis = source.is_axis;
     FoundMidsurface outcome =
-        is_axis ? reading(source.file, options.source.format,
-                          [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
+        is_axis ? reading(source, [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
                 : of_solid(options, source, listener);
     stop_if_requested(cancel);
     const Midsurface& surface = outcome.surface;
@@ -335,7 +331,7 @@ Command midsurface_command(CommandLine program) {
     add_sampling_option(command, options->pipeline.sizing);
     add_number(command, "--scale", options->scale, "Factor by which balls are grown, so that small features go",
                kScaleRange, "S");
-    add_source_options(command, options->source);
+    add_source_options(command, options->source, {"--delta", "--delta-abs", "--sampling", "--scale"});
     add_common_options(command, options->common);
     command.footer(
         "Walls want samples closer than they are thick: choose --delta below a third of the least thickness.\n"

@@ -84,6 +84,13 @@ std::string output_pattern(const std::string& output, const std::string& kind, b
 
 bool is_stdout(const fs::path& file) { return file == kStdout; }
 
+std::string format_of(const fs::path& file, const std::string& format) {
+    std::string name = format.empty() ? file.extension().string() : format;
+    name.erase(0, name.starts_with('.') ? 1 : 0);
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return name;
+}
+
 std::string written_format(const fs::path& file, const std::string& format, const std::string& otherwise) {
     return format.empty() && is_stdout(file) ? otherwise : format;
 }

@@ -28,6 +28,9 @@ std::string output_pattern(const std::string& output, const std::string& kind, b
 
 bool is_stdout(const std::filesystem::path& file);
 
+/// The extension of a file, or the format that takes its place, in lower case and without a dot.
+std::string format_of(const std::filesystem::path& file, const std::string& format);
+
 /// The format in which a file is written: the one that is chosen, or for stdout `otherwise`; empty: that of its name.
 std::string written_format(const std::filesystem::path& file, const std::string& format,
                            const std::string& otherwise = "ply");

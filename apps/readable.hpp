@@ -35,16 +35,20 @@ class ReadableFile {
     std::optional<TemporaryFile> copy_;  ///< at `path_`, if that is not the input
 };
 
-/// What `read(path)` returns for a path at which the input can be read several times, and whose extension is `format`
-/// unless that is empty.
+/// What `read(path)` returns for the path of the file.
 template <class Read>
-auto reading(const std::filesystem::path& input, const std::string& format, const Read& read) {
-    const ReadableFile file(input, format);
+auto reading(const ReadableFile& file, const Read& read) {
     try {
         return read(file.path());
     } catch (const FileError& error) {
         throw file.renamed(error);
     }
+}
+
+/// The same for an input that is read this once. \param format see `ReadableFile`
+template <class Read>
+auto reading(const std::filesystem::path& input, const std::string& format, const Read& read) {
+    return reading(ReadableFile(input, format), read);
 }
 
 /// The mesh of a file. What reading it has left out or repaired becomes warnings. \param name of the file in these

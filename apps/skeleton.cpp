@@ -81,12 +81,6 @@ SkeletonOptions skeleton_options(const CurveOptions& options, double diagonal) {
             .radius = options.radius};
 }
 
-/// Options that say how an axis is computed have no effect on one that is stored.
-bool has_axis_options(const CurveOptions& options) {
-    return has_sampling_options(options.pipeline) || options.pipeline.cleaning || !options.parts.empty() ||
-           options.leads_to_openings || options.has_sections;
-}
-
 /// The root, the path between two places, even steps.
 Skeleton derived(Skeleton skeleton, const CurveOptions& options, double diagonal) {
     const auto place = [](const std::array<double, 3>& p) { return Point{p[0], p[1], p[2]}; };
@@ -100,12 +94,7 @@ Skeleton derived(Skeleton skeleton, const CurveOptions& options, double diagonal
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, const Listener& listener) {
-    if (has_axis_options(options)) {
-        throw InvalidOption(options.input.string() +
-                            " is an axis: --delta, --clean, --sampling, --parts, --to-openings and --sections are for "
-                            "solids");
-    }
-    check_unused(options.source, "an axis that is there already", {"--as", "--format"});
+    check_unused(options.source, "an axis that is there already", {"--format"});
     FoundSkeleton outcome;
     Stopwatch watch;
     outcome.complex = read_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);
@@ -198,6 +187,11 @@ SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::v
     SkeletonFiles files;
     files.skeleton = add(output_pattern(options.output, "skeleton", false, options.output_format, "swc"),
                          with_format(check_skeleton_output, options.output_format, "swc"));
+    const std::string format = format_of(files.skeleton, written_format(files.skeleton, options.output_format, "swc"));
+    if (options.has_sections && format != "vtp" && format != "json") {
+        throw InvalidOption("--sections has no effect on ." + format +
+                            ": write .vtp or .json, which have room for them");
+    }
     if (!options.parts.empty()) {
         files.parts = add(output_pattern(options.parts, "parts", false), with_format(check_parts_output, {}));
     }
@@ -210,10 +204,9 @@ SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::v
 
 SourceResult run_source(const CurveOptions& options, const Source& source, const SkeletonFiles& files,
                         const Listener& listener, const std::stop_token& cancel) {
-    FoundSkeleton outcome = is_stored_axis(source)
-                                ? reading(source.file, options.source.format,
-                                          [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
-                                : of_solid(options, source, listener);
+    FoundSkeleton outcome =
+        source.is_axis ? reading(source, [&](const fs::path& path) { return of_stored_axis(options, path, listener); })
+                       : of_solid(options, source, listener);
     const SkeletonStatistics statistics = statistics_of(outcome.skeleton, outcome.complex);
     warn_of_sheets(statistics, source.name, listener);
     stop_if_requested(cancel);
@@ -333,7 +326,9 @@ Command skeleton_command(CommandLine program) {
                    "been,\nby default as the file says, or else 1",
                    kScaleRange, "S");
     add_clean_options(command, options->pipeline.cleaning, "half of delta");
-    add_source_options(command, options->source);
+    add_source_options(
+        command, options->source,
+        {"--delta", "--delta-abs", "--sampling", "--clean", "--clean-abs", "--parts", "--to-openings", "--sections"});
     add_common_options(command, options->common);
     command.footer(
         "VTP has a line for each branch, with VMTK's arrays. Loops of the solid stay loops, but SWC and CSV "

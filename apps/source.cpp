@@ -143,7 +143,7 @@ void add_solid_options(CommandLine command, SolidOptions& options, const std::st
     }
 }
 
-void add_source_options(CommandLine command, SourceOptions& options) {
+void add_source_options(CommandLine command, SourceOptions& options, const std::vector<std::string>& for_solids) {
     const std::string group = "Input";
     add_kind_option(command, options.load.kind);
     command.option("--as").group(group);
@@ -254,8 +254,10 @@ void add_source_options(CommandLine command, SourceOptions& options) {
         .needs(implicit)
         .value_text("LENGTH")
         .group(group);
-    command.on_parsed([command, &options, group] {
+    command.on_parsed([command, &options, group, for_solids] {
         options.given = command.given_options(group);
+        std::ranges::copy_if(for_solids, std::back_inserter(options.given),
+                             [&](const std::string& name) { return command.option(name).count() > 0; });
         for (const std::string& text : options.labels) {
             if (double number = 0.0; parse_value(text, number)) {
                 options.load.labels.push_back(static_cast<float>(number));
@@ -396,8 +398,7 @@ LoadedSolid load_source(const Source& source, const Execution& execution,
         return result;
     }
     if (!source.images) {
-        return reading(source.file, source.options.format,
-                       [&](const fs::path& path) { return load_solid(path, options, execution); });
+        return reading(source, [&](const fs::path& path) { return load_solid(path, options, execution); });
     }
     const LabelImage& image = source.images->read(source.file, source.options);
     if (!source.label) {  // otherwise each would be a source of its own

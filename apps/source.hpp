@@ -14,6 +14,7 @@
 #include "command_line.hpp"
 #include "documents.hpp"
 #include "inputs.hpp"
+#include "readable.hpp"
 #include "scaleaxis/execution.hpp"
 #include "scaleaxis/image.hpp"
 #include "scaleaxis/io.hpp"
@@ -38,7 +39,7 @@ struct SourceOptions {
     bool is_each_object = false;
     FunctionChoice function;
     std::string format;                   ///< the extension that the input would have; empty: its name or content tells
-    std::vector<std::string> given = {};  ///< the names of all options of the input that are
+    std::vector<std::string> given = {};  ///< the names of all options for solids that are
 };
 
 /// Are several solids made from one input?
@@ -48,9 +49,10 @@ inline bool is_each(const SourceOptions& options) { return options.is_each_label
 void add_kind_option(CommandLine command, std::optional<FileKind>& kind);
 /// `--solid` and what belongs to it. \param group of the help; empty: none
 void add_solid_options(CommandLine command, SolidOptions& options, const std::string& group = "");
-void add_source_options(CommandLine command, SourceOptions& options);
+/// \param for_solids other options of the command that say how something is made of a solid
+void add_source_options(CommandLine command, SourceOptions& options, const std::vector<std::string>& for_solids = {});
 
-/// That no option of the input is given which has no effect. \param what the input is, as a message goes on
+/// That no option for solids is given which has no effect. \param what the input is, as a message goes on
 /// \param used those that have one \throws InvalidOption
 void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used);
 
@@ -90,16 +92,24 @@ struct Source {
     std::filesystem::path name;
     std::filesystem::path file;  ///< empty for a function
     SourceOptions options;
-    std::shared_ptr<ImageReader> images = {};   ///< of a label: what has read the image already; else null
-    std::shared_ptr<ObjectReader> meshes = {};  ///< of an object: the same
-    std::string origin = {};                    ///< of an input that a list names: where (see inputs.hpp)
-    std::optional<LabelCount> label = {};       ///< with `--each-label`
+    std::shared_ptr<ImageReader> images = {};           ///< of a label: what has read the image already; else null
+    std::shared_ptr<ObjectReader> meshes = {};          ///< of an object: the same
+    std::string origin = {};                            ///< of an input that a list names: where (see inputs.hpp)
+    std::optional<LabelCount> label = {};               ///< with `--each-label`
+    std::shared_ptr<const ReadableFile> readable = {};  ///< `file`, if it was read already; else null
+    bool is_axis = false;                               ///< there already, of commands that take one input
 };
 
 /// The sources that inputs and options mean, with `--each-label` one for each label, with
 /// `--each-object` one for each object.
 /// \throws InvalidOption if they do not go together
 std::vector<Source> sources_of(const std::vector<Input>& inputs, const SourceOptions& options);
+
+/// What `read(path)` returns for the file of a source.
+template <class Read>
+auto reading(const Source& source, const Read& read) {
+    return source.readable ? reading(*source.readable, read) : reading(source.file, source.options.format, read);
+}
 
 /// Reads what the source is made from and makes it a solid. A source with `images` is read by these: then several
 /// threads may load its labels at once, while the reader keeps the image.

@@ -24,13 +24,6 @@ const std::set<std::string> kTexts{"json", "yaml", "yml", "csv", "srdf", "urdf"}
 // Of robots alone, with the extensions of their files.
 const std::map<std::string, std::string> kPlanners{{"curobo", "yml"}, {"vamp", "json"}, {"ballpark", "json"}};
 
-std::string format_of(const fs::path& file, const std::string& format) {
-    std::string name = format.empty() ? file.extension().string() : format;
-    name.erase(0, name.starts_with('.') ? 1 : 0);
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name;
-}
-
 std::string triple(const Point& p, const std::string& separator) {
     return shortest(p.x) + separator + shortest(p.y) + separator + shortest(p.z);
 }

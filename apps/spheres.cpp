@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 constexpr Range kEffortRange{0.01, 1000.0};
 
 struct SpheresOptions {
-    std::optional<fs::path> input;
+    fs::path input;
     SourceOptions source;
     std::string output;
     std::string output_format;
@@ -207,16 +207,11 @@ std::vector<Spheres> spheres_of_links(const SpheresOptions& options, const Robot
     return found;
 }
 
-bool is_axis(const fs::path& file, const SpheresOptions& options) {
-    return !options.source.load.kind && options.source.format.empty() && fs::is_regular_file(file) &&
-           file_kind(file) == FileKind::kAxis;
-}
-
 Spheres spheres_of_input(const SpheresOptions& options, Source source, const Listener& listener) {
     const Execution execution = listener.execution({0.3, 1.0});
     const std::string name = stem_of(source.name);
-    if (is_axis(source.file, options)) {
-        const BallsOrAxis given = read_balls_or_axis(source.file, false);
+    if (source.is_axis) {
+        const BallsOrAxis given = reading(source, [](const fs::path& path) { return read_balls_or_axis(path, false); });
         const std::unique_ptr<Solid> solid = envelope_solid(std::get<Envelope>(given.solid), 0.0, execution);
         return spheres_of(name, solid.get(), std::nullopt, options, {}, execution);
     }
@@ -298,19 +293,16 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
     if (options.is_inside && options.count && options.error) {
         throw InvalidOption("--inside takes either --count or --error, not both: balls inside stick out nowhere");
     }
-    const std::vector<Source> sources =
-        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
-    if (sources.size() != 1 && !is_each(options.source)) {
-        throw InvalidOption("one input is needed, and these are " + std::to_string(sources.size()));
-    }
+    const std::vector<Source> sources = is_robot(options.input) ? sources_of({{options.input, {}}}, options.source)
+                                                                : sources_of_one(options.input, options.source);
     std::vector<fs::path> files;
     std::vector<Output> outputs;
     for (const Source& source : sources) {
         const bool has_links = is_robot(source.file);
         if (has_links) {
             check_unused(options.source, "a robot, whose links are meshes", {"--solid", "--opening", "--thickness"});
-        } else if (is_axis(source.file, options)) {
-            check_unused(options.source, "an axis that is there already", {});
+        } else if (source.is_axis) {
+            check_unused(options.source, "an axis that is there already", {"--format"});
         }
         for (const auto& [name, is_given] :
              {std::pair{"--package", !options.packages.empty()}, std::pair{"--total", options.total.has_value()},

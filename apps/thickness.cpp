@@ -192,11 +192,6 @@ Json json_of_values(const SurfaceValues& values, const TriangleMesh& mesh) {
             {"maximum", values.max}, {"maximum_place", json_of_place(mesh.vertices[values.max_vertex])}};
 }
 
-bool is_axis_file(const ThicknessCommandOptions& options, const Source& source) {
-    return options.source.format.empty() && source.name != "-" && fs::is_regular_file(source.file) &&
-           !source.options.load.kind && file_kind(source.file) == FileKind::kAxis;
-}
-
 /// The files that one solid leads to.
 struct ThicknessFiles {
     std::optional<fs::path> surface;
@@ -229,10 +224,14 @@ ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& so
 
 /// An axis that is there already, or that of the solid.
 MeasuredSolid measured_solid(const ThicknessCommandOptions& options, const Source& source, const Listener& listener) {
-    if (is_axis_file(options, source)) {
-        check_unused(options.source, "an axis that is there already", {});
+    if (source.is_axis) {
+        std::vector<std::string> used{"--format"};
+        if (options.surface.empty()) {  // of the envelope
+            used.insert(used.end(), {"--delta", "--delta-abs"});
+        }
+        check_unused(options.source, "an axis that is there already", used);
         Stopwatch watch;
-        MeasuredSolid subject = reading(source.file, "", [&](const fs::path& path) {
+        MeasuredSolid subject = reading(source, [&](const fs::path& path) {
             return read_axis_and_surface(options, path, listener.execution({0.0, 0.9}));
         });
         subject.costs.push_back(watch.lap("reading"));
@@ -248,7 +247,6 @@ MeasuredSolid measured_solid(const ThicknessCommandOptions& options, const Sourc
 SourceResult run_source(const ThicknessCommandOptions& options, const Source& source, const ThicknessFiles& files,
                         const Listener& listener, const std::stop_token& cancel) {
     const auto& [surface_file, image_file, page] = files;
-    const bool is_axis = is_axis_file(options, source);
     MeasuredSolid subject = measured_solid(options, source, listener);
     Stopwatch watch;
     const Execution execution = listener.execution({0.9, 1.0});
@@ -334,7 +332,7 @@ SourceResult run_source(const ThicknessCommandOptions& options, const Source& so
     SourceResult result;
     result.entry = {{"input", source.name.string()},
                     {"unit", subject.unit.empty() ? Json(nullptr) : Json(subject.unit)},
-                    {"scale", is_axis ? Json(nullptr) : Json(options.scale)},
+                    {"scale", source.is_axis ? Json(nullptr) : Json(options.scale)},
                     {"angle", options.thickness.angle},
                     {"vertices", subject.surface.vertices.size()},
                     {"area", values.area},
@@ -366,7 +364,7 @@ Status run_thickness(ThicknessCommandOptions options, const std::stop_token& can
         throw InvalidOption("--resolution has no effect without --image: leave it out, or add --image FILE");
     }
     const std::vector<Source> sources = sources_of_one(options.input, options.source);
-    if (!options.surface.empty() && !is_axis_file(options, sources.front())) {
+    if (!options.surface.empty() && !sources.front().is_axis) {
         throw InvalidOption("--surface has no effect where the axis is computed from a solid: leave it out");
     }
     std::vector<Output> outputs;
@@ -433,7 +431,7 @@ Command thickness_command(CommandLine program) {
     command.add_option("--surface", options->surface, "Beside an axis: the mesh at which its thickness is asked")
         .value_text("MESH");
     add_number(command, "--bins", options->bins, "Bins of the histogram", kBinsRange, "N");
-    add_source_options(command, options->source);
+    add_source_options(command, options->source, {"--delta", "--delta-abs", "--sampling", "--scale"});
     add_common_options(command, options->common);
     command.footer(
         "The local thickness at a point is the diameter of the largest ball in the solid that contains it.\n"

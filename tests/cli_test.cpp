@@ -1366,6 +1366,21 @@ TEST_F(CommandLine, ReadsPipes) {
     EXPECT_EQ(spheres.status, 0) << spheres.err;
     EXPECT_TRUE(contains(spheres.err, "left out")) << spheres.err;
     EXPECT_FALSE(contains(spheres.out, "100.0 % of the surface")) << spheres.out;
+    // As a solid, and as an axis that is there already: what it is has to be known first.
+    const std::string axis = content(folder_ / "file.ply");
+    for (const Arguments& command : {Arguments{"skeleton", "-", "-o", "out.swc"},
+                                     {"midsurface", "-", "-o", "out.ply", "--angle", "20"},
+                                     {"thickness", "-", "-o", "out.ply", "--edge", "0.2"},
+                                     {"filtration", "-", "-o", "out.ply"},
+                                     {"spheres", "-", "-o", "out.ply", "--count", "2"}}) {
+        SCOPED_TRACE(command[0]);
+        const Outcome of_solid = run_with_input(command, box_off(0, 0, 0, 1));
+        EXPECT_EQ(of_solid.status, 0) << of_solid.err;
+        EXPECT_EQ(run_with_input(command, axis).status, 0);
+        Arguments with_option = command;
+        with_option.insert(with_option.end(), {"--mask-smoothing", "1"});
+        expect_error_line(run_with_input(with_option, axis), "--mask-smoothing has no effect on an axis");
+    }
     EXPECT_EQ(run_with_input({"info", "-"}, "").status, 3);
     const Outcome torn = run_with_input({"info", "/dev/stdin"}, box_off(0, 0, 0, 1).substr(0, 60));
     EXPECT_EQ(torn.status, 3);
@@ -1775,6 +1790,11 @@ TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
     EXPECT_EQ(run({"filter", "axis.ply", "-o", "x.ply", "--scale", "11"}).status, 2);
     expect_error_line(run({"filtration", "axis.ply", "-o", "x.ply", "--label", "1"}), "--label has no effect");
     expect_error_line(run({"skeleton", "axis.ply", "-o", "x.swc", "--iso", "1"}), "--iso has no effect");
+    expect_error_line(run({"skeleton", "axis.ply", "-o", "x.swc", "--clean-abs", "1"}), "--clean-abs has no effect");
+    expect_error_line(run({"midsurface", "axis.ply", "-o", "x.ply", "--scale", "1.2"}), "--scale has no effect");
+    expect_error_line(run({"thickness", "axis.ply", "--sampling", "uniform"}), "--sampling has no effect");
+    expect_error_line(run({"thickness", "axis.ply", "--surface", "box.off", "--delta", "0.1"}),
+                      "--delta has no effect");
     expect_error_line(run({"spheres", "axis.ply", "-o", "x.ply", "--count", "2", "--label", "1"}), "has no effect");
     EXPECT_EQ(content(folder_ / "nested.ply"), content(folder_ / "again.ply"));
 
@@ -2159,7 +2179,8 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
         EXPECT_EQ(node["section"]["is_closed"], true);
     }
     ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-sharp", "-q"}).status, 0);
-    expect_error_line(run({"skeleton", "box.ply", "-o", "box.vtp", "--sections"}), "--sections are for solids");
+    expect_error_line(run({"skeleton", "box.ply", "-o", "box.vtp", "--sections"}), "--sections has no effect");
+    expect_error_line(skeleton({"-o", "ring.swc", "--sections"}), "--sections has no effect on .swc");
     expect_error_line(skeleton({"-o", "ring.swc", "--parts", "x.ply", "--path", "2,0,0", "0,-2,0"}), "--path");
     EXPECT_EQ(skeleton({"-o", "ring.swc", "--path", "2,0,0"}).status, 2);
 }
