@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
-#include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <numbers>
 #include <optional>
 #include <span>
@@ -119,85 +119,20 @@ std::vector<std::uint8_t> find_coarse_faces(const MedialComplex& complex, const 
     });
 }
 
-// Counts the vertices that the finer complex will have, without making it, up to a limit.
-class VertexCount {
-   public:
-    VertexCount(const MedialComplex& complex, const MeetingCriterion& criterion, std::int64_t limit)
-        : complex_(complex), criterion_(criterion), limit_(limit) {}
-
-    bool exceeds_limit(const std::vector<std::uint8_t>& is_coarse) const {
-        std::atomic<std::int64_t> count = static_cast<std::int64_t>(complex_.vertices.size());
-        std::vector<std::int64_t> on_edge(complex_.edges.size());
-        for_each_index(on_edge.size(), [&](std::size_t e) {
-            const auto& [p, q] = complex_.edges[e];
-            if (count <= limit_ && criterion_.is_too_long(node(p), node(q))) {
-                on_edge[e] = segments(node(p), node(q), 0) - 1;
-                count += on_edge[e];
-            }
-        });
-        for_each_index(complex_.faces.size(), [&](std::size_t f) {
-            if (is_coarse[f] != 0 && count <= limit_) {
-                count += inner_vertices(f, on_edge);
-            }
-        });
-        return count > limit_;
-    }
-
-   private:
-    Node node(Index v) const { return node_at(complex_, v); }
-
-    std::int64_t segments(const Node& p, const Node& q, int round) const {
-        if (round == kMaxRounds || !criterion_.is_too_long(p, q)) {
-            return 1;
-        }
-        const Node middle = middle_of(p, q);
-        const std::int64_t left = segments(p, middle, round + 1);
-        return left > limit_ ? left : left + segments(middle, q, round + 1);
-    }
-
-    std::int64_t triangles(const std::array<Node, 3>& corners, int round, std::int64_t known) const {
-        const auto middle = [&](int k) {
-            const Node& p = corners[k];
-            const Node& q = corners[(k + 1) % 3];
-            return criterion_.is_too_long(p, q) ? std::optional(middle_of(p, q)) : std::nullopt;
-        };
-        const auto place_of = [](const Node& node) { return node.ball.center; };
-        const auto add = [&](const Node& a, const Node& b, const Node& c) {
-            known = triangles({a, b, c}, round + 1, known);
-        };
-        const bool is_enough = round == kMaxRounds || known > 2 * limit_;
-        return is_enough || !split_triangle(corners, middle, place_of, add) ? known + 1 : known;
-    }
-
-    // By Euler's formula: a disk of T triangles with B vertices on its boundary has (T - B) / 2 + 1 inside.
-    std::int64_t inner_vertices(std::size_t face, const std::vector<std::int64_t>& on_edge) const {
-        const std::span<const Index> corners = complex_.faces[face];
-        auto boundary = static_cast<std::int64_t>(corners.size());
-        for (const Index e : complex_.face_edges[face]) {
-            boundary += on_edge[e];
-        }
-        std::int64_t count = 0;
-        for (std::size_t k = 2; k < corners.size(); ++k) {
-            count = triangles({node(corners[0]), node(corners[k - 1]), node(corners[k])}, 0, count);
-        }
-        return (count - boundary) / 2 + 1;
-    }
-
-    const MedialComplex& complex_;
-    const MeetingCriterion& criterion_;
-    std::int64_t limit_;
-};
-
 struct Triangle {
     std::array<Index, 3> corners;
     Index face;  // of the complex that is sampled
 };
 
+// Is told how many vertices there are, and throws if these are too many.
+using SizeCheck = std::function<void(std::size_t)>;
+
 // The vertices of the finer complex, and which of its edges are fine enough.
 template <class Criterion>
 class Refinement {
    public:
-    Refinement(MedialComplex& complex, const Criterion& criterion) : complex_(complex), criterion_(criterion) {}
+    Refinement(MedialComplex& complex, const Criterion& criterion, const SizeCheck& check_size)
+        : complex_(complex), criterion_(criterion), check_size_(check_size) {}
 
     bool is_too_long(Index p, Index q) const { return criterion_.is_too_long(node(p), node(q)); }
 
@@ -209,6 +144,7 @@ class Refinement {
         if (is_new) {
             const Node middle = middle_of(node(low), node(high));
             add_vertex(complex_, middle.ball, middle.origin);
+            check_size_(complex_.vertices.size());
         }
         return entry->second;
     }
@@ -231,6 +167,7 @@ class Refinement {
 
     MedialComplex& complex_;
     const Criterion& criterion_;
+    const SizeCheck& check_size_;
     std::unordered_map<std::uint64_t, Index> middles_;
 };
 
@@ -241,27 +178,27 @@ void validate(const DensifyOptions& options) {
             "the limit of vertices must lie between 1 and " + std::to_string(kMostVertices));
 }
 
-void check_size(const MedialComplex& complex, const MeetingCriterion& criterion,
-                const std::vector<std::uint8_t>& is_coarse, const DensifyOptions& options) {
-    const auto vertices = static_cast<std::int64_t>(complex.vertices.size());
+SizeCheck size_check(std::size_t given, double scale, const DensifyOptions& options) {
+    const auto vertices = static_cast<std::int64_t>(given);
     const std::int64_t automatic = std::clamp(kMostGrowth * vertices, kLeastLimit, kMostVertices);
-    const std::int64_t limit = options.most_vertices.value_or(automatic);
-    if (VertexCount(complex, criterion, limit).exceeds_limit(is_coarse)) {
-        Words message;
-        message << "shrunk by s = " << criterion.scale
-                << ", the balls of the axis overlap so little that it takes more than " << limit
-                << " vertices (the limit; now there are " << vertices << ") until they meet at "
-                << options.meeting_angle << " degrees: use more balls (a smaller delta) or a smaller scale";
-        throw UnusableInput(Diagnostic{"shrinking.size", message.str()});
-    }
+    return [=, limit = options.most_vertices.value_or(automatic)](std::size_t count) {
+        if (static_cast<std::int64_t>(count) > limit) {
+            Words message;
+            message << "shrunk by s = " << scale << ", the balls of the axis overlap so little that it takes more than "
+                    << limit << " vertices (the limit; now there are " << vertices << ") until they meet at "
+                    << options.meeting_angle << " degrees: use more balls (a smaller delta) or a smaller scale";
+            throw UnusableInput(Diagnostic{"shrinking.size", message.str()});
+        }
+    };
 }
 
 // Faces and curves of a complex, split until they are fine enough.
 template <class Criterion>
 MedialComplex refined(const MedialComplex& complex, const Criterion& criterion,
-                      const std::vector<std::uint8_t>& is_coarse, int rounds, const Execution& execution) {
+                      const std::vector<std::uint8_t>& is_coarse, int rounds, const SizeCheck& check_size,
+                      const Execution& execution) {
     MedialComplex result = vertices_of(complex);
-    Refinement refinement(result, criterion);
+    Refinement refinement(result, criterion, check_size);
     CancellationPoint stop_if_cancelled_now_and_then;
 
     std::vector<std::array<Index, 2>> curves;
@@ -325,8 +262,9 @@ MedialComplex densified(MedialComplex complex, const DensifyOptions& options, co
         const MeetingCriterion criterion(options, scale);
         complex = grown(std::move(complex));
         const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
-        check_size(complex, criterion, is_coarse, options);
-        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, execution), scale);
+        const SizeCheck check_size = size_check(complex.vertices.size(), scale, options);
+        check_size(complex.vertices.size());
+        MedialComplex result = shrunk(refined(complex, criterion, is_coarse, kMaxRounds, check_size, execution), scale);
         report(execution, kDensifyingStage, 1.0);
         return result;
     });
@@ -359,7 +297,8 @@ MedialComplex linearized(MedialComplex complex, double tolerance, const LinearPa
     const LinearCriterion criterion{scale * tolerance, known};
     complex = grown(std::move(complex));
     const std::vector<std::uint8_t> is_coarse = find_coarse_faces(complex, criterion);
-    return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, {}), scale);
+    const SizeCheck none = [](std::size_t) {};
+    return shrunk(refined(complex, criterion, is_coarse, kLinearRounds, none, {}), scale);
 }
 
 MedialComplex with_linear_radii(MedialComplex complex) {

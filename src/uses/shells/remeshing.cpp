@@ -43,6 +43,12 @@ struct Spoke {
 
 enum class VertexPlace { kInside, kOnCurve, kCorner };
 
+// The walls and rims that a vertex lies on, for `WallShapes::place`.
+struct VertexWalls {
+    std::vector<Index> walls;
+    std::vector<Index> rims;
+};
+
 class WallRemesher {
    public:
     WallRemesher(const WallMesh& input, double size, const WallShapes& shapes)
@@ -160,9 +166,6 @@ class WallRemesher {
         }
         return result;
     }
-
-    VertexWalls walls_of(Index v) const { return walls_of(spokes_of(v)); }
-    std::size_t vertex_count() const { return vertices_.size(); }
 
    private:
     using Edge = std::tuple<double, Index, Index>;
@@ -539,12 +542,6 @@ WallMesh remeshed(const WallMesh& input, double size, double farthest, const Wal
     }
     remesher.flip();
     return remesher.result();
-}
-
-std::vector<VertexWalls> walls_of_vertices(const WallMesh& mesh, const WallShapes& shapes) {
-    const WallRemesher remesher(mesh, 1.0, shapes);
-    return mapped<VertexWalls>(static_cast<Index>(remesher.vertex_count()),
-                               [&](Index v) { return remesher.walls_of(v); });
 }
 
 }  // namespace scaleaxis::inline v1

@@ -38,11 +38,4 @@ struct WallShapes {
 WallMesh remeshed(const WallMesh& input, double size, double farthest, const WallShapes& shapes,
                   const Execution& execution);
 
-/// A corner of a triangle with the walls and rims that it lies on, for `WallShapes::place`.
-struct VertexWalls {
-    std::vector<Index> walls;
-    std::vector<Index> rims;
-};
-std::vector<VertexWalls> walls_of_vertices(const WallMesh& mesh, const WallShapes& shapes);
-
 }  // namespace scaleaxis::inline v1
