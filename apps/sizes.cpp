@@ -164,7 +164,8 @@ Command sizes_command(CommandLine program) {
     command.footer(
         "Examples:\n"
         "  scaleaxis sizes part.stl --elements-across 4 --max-size 5 -o sizes.pos\n"
-        "  gmsh part.step -bgm sizes.pos -3\n"
+        "  gmsh part.step -bgm sizes.pos -3 -setnumber Mesh.MeshSizeExtendFromBoundary 0 -setnumber \\\n"
+        "    Mesh.MeshSizeFromPoints 0\n"
         "  scaleaxis sizes part.stl --min-size 0.2 -o part.sol && mmgs part.mesh fine.mesh");
     return {command, [options](const std::stop_token& cancel) { return run_sizes(*options, cancel); }};
 }

@@ -66,7 +66,7 @@ SCALEAXIS_EXPORT FileKind file_kind(const FileBytes& file);
 /// The extensions of all formats that are read, in lower case: ".obj", ".nii.gz".
 SCALEAXIS_EXPORT std::vector<std::string> input_extensions();
 
-/// A mesh from OBJ, OFF, PLY or STL (ascii or binary); polygons are triangulated, STL is welded. From 3MF and glTF: all
+/// A mesh from OBJ, OFF, PLY, STL or VTK; polygons are triangulated, STL is welded. From 3MF and glTF: all
 /// objects of the scene together.
 /// \throws FileError naming the file, the line or element where known, and what is wrong
 SCALEAXIS_EXPORT TriangleMesh read_mesh(const std::filesystem::path& file);
@@ -96,8 +96,8 @@ SCALEAXIS_EXPORT MeshObjects read_objects(const FileBytes& file);
 /// One mesh of all objects.
 SCALEAXIS_EXPORT TriangleMesh joined(std::vector<MeshObject> objects);
 
-/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), tables (.csv, .tsv), LAS or PCD, and the
-/// vertices of OBJ, OFF, PLY and STL; with normals, if the file has them. Of six columns of text the last three may be
+/// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), tables (.csv, .tsv), LAS, PCD or VTK, and
+/// the vertices of OBJ, OFF, PLY and STL; with normals, if the file has them. Of six columns of text the last three may be
 /// colours. Coordinates need not be finite: `prepare` leaves such points out. \throws FileError naming the line or the
 /// point, and what is wrong
 SCALEAXIS_EXPORT PointCloud read_points(const std::filesystem::path& file);

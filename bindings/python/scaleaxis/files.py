@@ -35,7 +35,7 @@ def file_kind(file: Path) -> FileKind:
 
 @checked
 def read_mesh(file: Path | bytes, name: str = "input") -> Mesh:
-    """A mesh from OBJ, OFF, PLY, STL, 3MF or glTF, all objects together: see `read_objects`."""
+    """A mesh from OBJ, OFF, PLY, STL, VTK, 3MF or glTF, all objects together: see `read_objects`."""
     core = _core.read_mesh(file, name)
     return Mesh(core["vertices"], core["triangles"])
 
@@ -50,7 +50,7 @@ def read_objects(file: Path | bytes, name: str = "input") -> list[MeshObject]:
 
 @checked
 def read_points(file: Path | bytes, name: str = "input") -> PointCloud:
-    """Points from text (.xyz, .pts, .pwn), tables (.csv, .tsv), LAS or PCD; the vertices of OBJ, OFF, PLY and STL."""
+    """Points from text (.xyz, .pts, .pwn), tables (.csv, .tsv), LAS, PCD or VTK; the vertices of meshes."""
     return PointCloud(*_core.read_points(file, name))
 
 
