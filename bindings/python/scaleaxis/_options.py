@@ -6,14 +6,16 @@ from __future__ import annotations
 import collections.abc
 import difflib
 import inspect
+import math
 import operator
 import os
 import re
 import reprlib
+import sys
 import types
 from collections.abc import Callable, Iterable, Mapping
 from functools import cache, wraps
-from typing import Annotated, Any, Literal, TypeVar, Union, cast, get_args, get_origin, get_type_hints, overload
+from typing import Annotated, Any, Literal, NamedTuple, TypeVar, Union, cast, get_args, get_origin, get_type_hints, overload
 
 import numpy as np
 
@@ -21,6 +23,19 @@ from .errors import InvalidOption
 
 Seed = Annotated[int, range(2**64)]
 """Of the random choices."""
+
+
+class Interval(NamedTuple):
+    """What a number has to lie in."""
+
+    least: float
+    most: float
+    words: str
+
+
+Length = Annotated[float, Interval(sys.float_info.min, sys.float_info.max, "a positive length")]
+Share = Annotated[float, Interval(0.0, 1.0, "a number between 0 and 1")]
+Number = Annotated[float, Interval(-math.inf, math.inf, "a number")]
 
 _COUNTS = range(-(2**31), 2**31)  # the library's counts and indices have 32 bits
 _CHECKED = (bool, str, bytes, os.PathLike, types.NoneType, collections.abc.Callable, np.ndarray)
@@ -49,7 +64,7 @@ class _Unfit(Exception):
 
 
 class _OutOfRange(_Unfit):
-    """A whole number that the library has no room for."""
+    """A number beyond what the option takes."""
 
 
 def _number(value: Any) -> float:
@@ -57,6 +72,13 @@ def _number(value: Any) -> float:
     if array is None or array.ndim > 0 or array.dtype.kind not in "iuf":
         raise _Unfit
     return float(value)
+
+
+def _number_in(value: Any, allowed: Interval) -> float:
+    number = _number(value)
+    if not allowed.least <= number <= allowed.most:
+        raise _OutOfRange
+    return number
 
 
 def _whole_number(value: Any, allowed: range) -> int:
@@ -83,7 +105,7 @@ def _fitted(value: Any, kind: Any) -> Any:
     if origin in (Union, types.UnionType):
         return _fitted_to_any(value, arguments)
     if origin is Annotated:
-        return _whole_number(value, arguments[1])
+        return _whole_number(value, arguments[1]) if arguments[0] is int else _number_in(value, arguments[1])
     if origin is Literal:
         if isinstance(value, str) and value in arguments:
             return value
@@ -132,6 +154,8 @@ def _alternatives(kind: Any) -> list[str]:
     if origin is Literal:
         return [("one of " if len(arguments) > 1 else "") + ", ".join(map(repr, arguments))]
     if origin is Annotated:
+        if isinstance(arguments[1], Interval):
+            return [arguments[1].words]
         least = arguments[1].start
         return ["a whole number" + (f" of at least {least}" if least >= 0 else "")]
     if origin is tuple:

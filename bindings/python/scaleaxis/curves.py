@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from . import _core
 from ._arrays import Floats
-from ._options import checked
+from ._options import Length, checked
 from ._progress import Progress, part_of, telling
 from .adapt import adapted
 from .data import MedialComplex, core_of
@@ -43,7 +43,7 @@ def _led_to_openings(core: dict[str, Any], axis: Axis, holes: Floats, node_spaci
 def skeleton(
     solid: Any,
     *,
-    node_spacing: float | None = None,
+    node_spacing: Length | None = None,
     significance: float = 1.0,
     radius: SkeletonRadius = "inscribed",
     to_openings: bool = False,

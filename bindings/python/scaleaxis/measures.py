@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats, Ints
-from ._options import checked
+from ._options import Length, Number, Share, checked
 from ._progress import Progress, telling
 from .adapt import adapted, as_complex, as_image, as_mesh, core_of_image, is_path
 from .data import Image, Mesh, core_of, image_of
@@ -29,7 +29,8 @@ class Thickness:
     balls: Floats  #: N × 4: centre and radius of the ball of `local`
     surface: Mesh | None = None  #: of a mesh: the points are its vertices
 
-    def thin_regions(self, limit: float) -> ThinRegions:
+    @checked
+    def thin_regions(self, limit: Length) -> ThinRegions:
         """The connected pieces of the surface that are thinner than a limit."""
         return thin_regions(*self._mesh(None, None), self.local, limit)
 
@@ -45,7 +46,7 @@ class Thickness:
         triangles: npt.ArrayLike | None = None,
         path: Path | None = None,
         *,
-        limit: float | None = None,
+        limit: Length | None = None,
         axis: AxisLike | None = None,
         name: str = "thickness",
     ) -> Page:
@@ -86,7 +87,7 @@ def thickness(
     points: Any = None,
     *,
     angle: float = 120.0,
-    edge: float = 0.01,
+    edge: Share = 0.01,
     threads: int = 0,
     progress: Progress = None,
 ) -> Thickness:
@@ -161,7 +162,7 @@ def _warn_of_long_edges(vertices: Floats, triangles: Ints, values: Floats, limit
 
 @checked
 def thin_regions(
-    vertices: npt.ArrayLike, triangles: npt.ArrayLike, values: npt.ArrayLike, limit: float
+    vertices: npt.ArrayLike, triangles: npt.ArrayLike, values: npt.ArrayLike, limit: Number
 ) -> ThinRegions:
     """The connected pieces of a surface where values at its vertices, as thickness, are below a limit.
 

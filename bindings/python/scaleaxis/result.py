@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, Ints
-from ._options import Seed, checked
+from ._options import Length, Seed, checked
 from ._progress import Progress, part_of, telling
 from .adapt import as_mesh
 from .data import MedialComplex, Mesh, Polygons, Samples, Topology, complex_of, core_of, mesh_after
@@ -221,7 +221,7 @@ class Axis:
     def skeleton(
         self,
         *,
-        node_spacing: float | None = None,
+        node_spacing: Length | None = None,
         significance: float = 1.0,
         radius: SkeletonRadius = "inscribed",
         threads: int = 0,

@@ -196,12 +196,13 @@ class Envelope:
     """The union of the balls all over a medial mesh, interpolated linearly along its edges and in its triangles. For
     `mesh`, `compare` and `sample_field`, too. May be used from several threads at once."""
 
-    __slots__ = ("_core",)
+    __slots__ = ("_complex", "_core")
 
     @checked
     def __init__(self, axis: Any) -> None:
         """axis: an `Axis` or a `MedialComplex`."""
-        self._core = _core.CoreEnvelope(core_of(as_complex(axis)))
+        self._complex = as_complex(axis)
+        self._core = _core.CoreEnvelope(core_of(self._complex))
 
     @property
     def bounds(self) -> Floats:
@@ -222,6 +223,9 @@ class Envelope:
     def inside(self, points: npt.ArrayLike, *, threads: int = 0) -> npt.NDArray[np.bool_]:
         """Does each point lie in the envelope or on its boundary?"""
         return self._core.inside(_arrays.points(points), threads, None)
+
+    def __reduce__(self) -> Any:
+        return Envelope, (self._complex,)
 
 
 class BallUnion:

@@ -147,6 +147,23 @@ def test_options_beside_an_axis_are_refused(box):
         scaleaxis.skeleton(axis, spacing=0.1)
 
 
+def test_numbers_that_no_length_or_share_can_be(box):
+    axis = scaleaxis.axis(box, delta=0.05)
+    for edge in (-1.0, 1.5, np.nan):
+        with pytest.raises(scaleaxis.InvalidOption, match="edge must be a number between 0 and 1, not"):
+            scaleaxis.thickness(axis, edge=edge)
+    for spacing in (0.0, -1.0, np.nan, np.inf):
+        for skeleton in (scaleaxis.skeleton, scaleaxis.Axis.skeleton):
+            with pytest.raises(scaleaxis.InvalidOption, match="node_spacing must be a positive length or None"):
+                skeleton(axis, node_spacing=spacing)
+    values = np.arange(len(box[0]), dtype=float)
+    assert len(scaleaxis.thin_regions(*box, values, -1).areas) == 0  # values need not be lengths
+    with pytest.raises(scaleaxis.InvalidOption, match="limit must be a number, not nan"):
+        scaleaxis.thin_regions(*box, values, np.nan)
+    with pytest.raises(TypeError, match="edge must be a number between 0 and 1, not '0.1'"):
+        scaleaxis.thickness(axis, edge="0.1")
+
+
 def test_star_imports_shadow_nothing():
     names: dict[str, object] = {}
     exec("from scaleaxis import *", names)

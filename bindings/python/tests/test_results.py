@@ -61,6 +61,8 @@ def same(a, b):
 def test_pickle_and_copy(axis):
     assert same(axis, pickle.loads(pickle.dumps(axis)))
     assert same(axis, copy.deepcopy(axis))
+    envelope = pickle.loads(pickle.dumps(scaleaxis.Envelope(axis)))
+    np.testing.assert_array_equal(envelope.bounds, scaleaxis.Envelope(axis).bounds)
     union = pickle.loads(pickle.dumps(scaleaxis.BallUnion(axis.balls)))
     assert np.array_equal(union.balls, axis.balls)
     again = pickle.loads(pickle.dumps(axis))  # and it can be used
