@@ -25,7 +25,18 @@ Status run_chosen(int argc, const char* const* argv, const std::stop_token& canc
     program.allow_windows_style_options(false);  // a path may begin with a slash there, too
     program.require_subcommand(0, 1);
     program.set_version_flag("--version", "scaleaxis " SCALEAXIS_VERSION, "Print the version");
-    program.failure_message([](const CLI::App*, const CLI::Error& error) {
+    program.failure_message([](const CLI::App* app, const CLI::Error& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ArgumentMismatch)) {
+            const std::string message = error.what();
+            const std::string name = message.substr(0, message.find(':'));
+            for (const CLI::App* command : app->get_subcommands()) {
+                const CLI::Option* option = command->get_option_no_throw(name);
+                if (option != nullptr && !option->get_option_text().empty()) {
+                    return "scaleaxis: error: " + name + " takes " + option->get_option_text() +
+                           "; see scaleaxis --help\n";
+                }
+            }
+        }
         // What is wrong with a value says what would be right.
         const bool is_about_value = error.get_exit_code() == static_cast<int>(CLI::ExitCodes::ValidationError);
         return "scaleaxis: error: " + std::string(error.what()) + (is_about_value ? "\n" : "; see scaleaxis --help\n");

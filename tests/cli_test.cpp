@@ -2181,6 +2181,8 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     ASSERT_EQ(run({"axis", "box.off", "-o", "box.ply", "--delta", "0.05", "--no-sharp", "-q"}).status, 0);
     expect_error_line(run({"skeleton", "box.ply", "-o", "box.vtp", "--sections"}), "--sections has no effect");
     expect_error_line(skeleton({"-o", "ring.swc", "--sections"}), "--sections has no effect on .swc");
+    expect_error_line(skeleton({"-o", "ring.swc", "--root", "1,2"}), "--root takes X,Y,Z");
+    expect_error_line(run({"mesh", "box.off", "-o", "x.ply"}), "box.off: its format, .off, is none of balls: .ply");
     expect_error_line(skeleton({"-o", "ring.swc", "--parts", "x.ply", "--path", "2,0,0", "0,-2,0"}), "--path");
     EXPECT_EQ(skeleton({"-o", "ring.swc", "--path", "2,0,0"}).status, 2);
 }

@@ -216,6 +216,19 @@ const Format* by_extension(const path& file, Function Format::*member) {
     return nullptr;
 }
 
+template <class Function>
+constexpr std::string_view kReadBy = "";
+template <>
+constexpr std::string_view kReadBy<ReadObjects*> = "meshes";
+template <>
+constexpr std::string_view kReadBy<ReadPoints*> = "points";
+template <>
+constexpr std::string_view kReadBy<ReadBalls*> = "balls";
+template <>
+constexpr std::string_view kReadBy<ReadAxis*> = "axes";
+template <>
+constexpr std::string_view kReadBy<ReadImage*> = "images";
+
 /// The format that a file has by its content, or else by its name, of those that have the function `member`.
 template <class Function>
 const Format& select_format(const path& file, std::string_view content, Function Format::*member) {
@@ -230,8 +243,14 @@ const Format& select_format(const path& file, std::string_view content, Function
     if (const Format* format = by_extension(file, member)) {
         return *format;
     }
+    const auto other = std::ranges::find_if(
+        kFormats, [&](const Format& format) { return format.is_content != nullptr && format.is_content(content); });
+    const Format* const found = other != kFormats.end() ? &*other : by_extension(file, &Format::is_content);
     throw FileError(Diagnostic{
-        "file.format", "neither its name nor its content is that of a format that can be read: " + extensions(member)});
+        "file.format", (found != nullptr ? "its format, " + std::string(found->extension) + ", is none of " +
+                                               std::string(kReadBy<Function>)
+                                         : "neither its name nor its content is that of a format that can be read") +
+                           ": " + extensions(member)});
 }
 
 template <class Function>
