@@ -253,6 +253,18 @@ TEST(Skeleton, OfTwoTubesThatPartIsOneCurve) {
     }
 }
 
+// Of balls grown by 1.1 that one sticks out by 0.89, not 1.05: less than the radius of a finger and a quarter of its
+// own.
+TEST(Skeleton, OfABallWithFingersHasAllOfThem) {
+    std::vector<Arm> arms{{{1, 0, 0}, 1e-3, 2.0}};
+    for (const Point& direction : {Point{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, 0, 1}}) {
+        arms.push_back({direction, 2.65, 0.4});
+    }
+    const Result result = skeleton_of(*arms_solid(arms, 3.5));
+    EXPECT_EQ(result.statistics.ends, 4);
+    EXPECT_EQ(result.statistics.branches, 4);
+}
+
 TEST(Skeleton, OfAFrameOfTubesEndsWhereATubeEnds) {
     constexpr double kRadius = 0.4;
     const auto ring = [](const Point& p) {  // with mitred corners

@@ -56,6 +56,10 @@ struct Burnt {
     std::vector<double> edge_times;
 
     double radius(Index v) const { return complex.scale * complex.radii[v]; }
+    // In the solid, whose balls are not grown.
+    double time_in_solid(Index v) const {
+        return vertex_paths[v] + (vertex_times[v] - vertex_paths[v]) / complex.scale;
+    }
 };
 
 // Vertices of `given` come first.
@@ -267,7 +271,8 @@ class ChainWalk {
 };
 
 // By how much an end is a limb, if not less than 0: the disc that the fire has burnt at its tip has to stick out of all
-// discs along the other curves at its junction, by its radius and by a part of theirs. \param chain from the tip to the
+// discs along the other curves at its junction, by its radius and by a part of theirs; in the solid, since grown balls
+// hide limbs. \param chain from the tip to the
 // junction
 double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
     const MedialComplex& complex = burnt.complex;
@@ -278,9 +283,9 @@ double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain
     for (std::size_t i = 0; i < seen.size(); ++i) {
         const Index v = seen[i];
         const double way = distance(complex.vertices[tip], complex.vertices[v]);
-        const double excess = way + burnt.vertex_times[tip] - burnt.vertex_times[v];
-        const double part = kLeastBlend * std::min(burnt.vertex_times[v], kWideFactor * burnt.radius(v));
-        least = std::min(least, excess - significance * (burnt.radius(tip) + part));
+        const double excess = way + burnt.time_in_solid(tip) - burnt.time_in_solid(v);
+        const double part = kLeastBlend * std::min(burnt.time_in_solid(v), kWideFactor * complex.radii[v]);
+        least = std::min(least, excess - significance * (complex.radii[tip] + part));
         for (const Index e : walk.edges_at(v)) {
             const Index next = other_end(complex.edges[e], v);
             if ((i == 0 || way < kMostRadii * burnt.vertex_times[v]) && is_seen.insert(next).second) {
