@@ -6,13 +6,16 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "meshes.hpp"
+
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/scale_axis.hpp"
+#include "solids.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -133,6 +136,83 @@ TEST(Shells, CrossingRibsHaveNoFlatTriangles) {
         const ShellMesh shells = shells_of(turned, {.size = 2.0});
         EXPECT_GT(shells.least_angle, 3.0);
         EXPECT_NEAR(area_of(shells), 32.0 * 32.0 + 4.0 * 32.0 * 9.25, 0.005 * 2208.0);
+    }
+}
+
+// Between the seams of the acute corners balls have a sheet of their own, which has no room between middle planes.
+TEST(Shells, ObliqueCrossesHaveOneSeam) {
+    for (const double degrees : {30.0, 45.0, 60.0}) {
+        SCOPED_TRACE(degrees);
+        const double angle = degrees * std::numbers::pi / 180.0;
+        const std::array<Point, 2> bars{Point{1, 0, 0}, {std::cos(angle), std::sin(angle), 0}};
+        std::vector<std::array<double, 2>> outline;
+        for (int k = 0; k < 4; ++k) {
+            const Point along = (k < 2 ? 1.0 : -1.0) * bars[k % 2];
+            const Point next = (k == 0 || k == 3 ? 1.0 : -1.0) * bars[(k + 1) % 2];
+            const Point aside{-0.5 * along.y, 0.5 * along.x, 0.0};
+            const Point corner = (0.5 / norm(cross(along, next))) * (along + next);
+            for (const Point& p : {7.5 * along - aside, 7.5 * along + aside, corner}) {
+                outline.push_back({p.x, p.y});
+            }
+        }
+        const ShellMesh shells = shells_of(prism(outline, 8.0), {.size = 1.5});
+        ASSERT_EQ(shells.sheets.size(), 4U);
+        for (const MidsurfaceSheet& sheet : shells.sheets) {
+            EXPECT_NEAR(sheet.area, 7.5 * 8.0, 0.01);
+        }
+        EXPECT_NEAR(shells.seam_length, 8.0, 0.01);
+        EXPECT_GT(shells.least_angle, 15.0);
+    }
+}
+
+// Turned at random.
+TriangleMesh ring(double outer, double inner, double height, unsigned seed) {
+    constexpr Index kSides = 64;
+    TriangleMesh mesh;
+    for (Index i = 0; i < kSides; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / kSides;
+        for (const auto& [radius, z] : {std::pair(outer, 0.0), {outer, height}, {inner, height}, {inner, 0.0}}) {
+            mesh.vertices.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+        const Index next = (i + 1) % kSides;
+        for (Index k = 0; k < 4; ++k) {
+            const Index above = (k + 1) % 4;
+            mesh.triangles.push_back({4 * i + k, 4 * next + k, 4 * next + above});
+            mesh.triangles.push_back({4 * i + k, 4 * next + above, 4 * i + above});
+        }
+    }
+    test::Random random(seed);
+    return test::moved(mesh, test::random_turn(random));
+}
+
+TEST(Shells, AHoleAsWideAsAnElementStays) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE(seed);
+        const ShellMesh shells = shells_of(ring(6.0, 0.8, 1.0, seed), {.size = 1.5}, 0, 0.015);
+        const auto vertices = static_cast<int>(shells.mesh.vertices.size());
+        const auto triangles = static_cast<int>(shells.mesh.triangles.size());
+        EXPECT_EQ(vertices - static_cast<int>(shells.middles.size()) + triangles, 0);
+    }
+}
+
+TEST(Shells, CurvedWallsEndInTheirMiddle) {
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE(seed);
+        const TriangleMesh tube = ring(6.0, 5.0, 15.0, seed);
+        const Point base = 0.5 * (tube.vertices[0] + tube.vertices[4 * 32]);
+        const Point along = (1.0 / 15.0) * (0.5 * (tube.vertices[1] + tube.vertices[4 * 32 + 1]) - base);
+        for (const double size : {0.8, 1.5}) {
+            SCOPED_TRACE(size);
+            const ShellMesh shells = shells_of(tube, {.size = size}, 0, 0.014);
+            for (const auto& [edge, count] : triangles_at_edges(shells.mesh)) {
+                for (const Index v : {edge.first, edge.second}) {
+                    const Point from = shells.mesh.vertices[v] - base;
+                    const double height = dot(from, along);
+                    ASSERT_NEAR(norm(from - height * along), 5.5, 0.05);
+                    ASSERT_NEAR(count > 1 ? 0.0 : std::abs(height - 7.5) - 7.5, 0.0, 0.02);
+                }
+            }
+        }
     }
 }
 

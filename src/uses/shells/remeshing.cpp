@@ -14,6 +14,7 @@
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
+#include "uses/ascent.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -117,6 +118,9 @@ class WallRemesher {
         for (Index t = 0; t < static_cast<Index>(triangles_.size()); ++t) {
             for (int k = 0; k < 3 && walls_[t] != kNone; ++k) {
                 clip_ear(t, k);
+            }
+            for (int k = 0; k < 3 && walls_[t] != kNone; ++k) {
+                join_curves(t, k);
             }
         }
     }
@@ -264,8 +268,12 @@ class WallRemesher {
             return p;
         }
         if (place == VertexPlace::kOnCurve) {
+            // Along the curve: halfway to the chord the rim of a small hole may be nearer on its other side.
             const std::vector<const Spoke*> curves = curves_of(spokes);
-            return midpoint(p, midpoint(vertices_[curves[0]->end], vertices_[curves[1]->end]));
+            const Point& before = vertices_[curves[0]->end];
+            const Point& after = vertices_[curves[1]->end];
+            const Point along = unit(after - before);
+            return p + 0.5 * dot(midpoint(before, after) - p, along) * along;
         }
         Point sum;
         for (const Spoke& spoke : spokes) {
@@ -321,7 +329,7 @@ class WallRemesher {
         }
     }
 
-    void cut(Index a, Index b) {
+    Index cut(Index a, Index b) {
         const auto middle = static_cast<Index>(vertices_.size());
         vertices_.push_back(midpoint(vertices_[a], vertices_[b]));
         at_.emplace_back();
@@ -338,6 +346,7 @@ class WallRemesher {
             at_[middle].push_back(t);
             at_[middle].push_back(added);
         }
+        return middle;
     }
 
     void clip_ear(Index t, int corner) {
@@ -369,6 +378,24 @@ class WallRemesher {
         }
     }
 
+    // A triangle between two curves at one place, as the seams of walls that cross obliquely: one is led through the
+    // corner on the other.
+    void join_curves(Index t, int corner) {
+        const Index v = triangles_[t][corner];
+        const Index a = triangles_[t][(corner + 1) % 3];
+        const Index b = triangles_[t][(corner + 2) % 3];
+        const Point along = vertices_[b] - vertices_[a];
+        const Point from = vertices_[v] - vertices_[a];
+        const double part = dot(from, along) / squared_norm(along);
+        if (!(part > 0.0 && part < 1.0 && norm(from - part * along) < kSmallPart * size_)) {
+            return;
+        }
+        const std::vector<Spoke> spokes = spokes_of(a);
+        if (place_of(spokes_of(v)) != VertexPlace::kInside && std::ranges::find(spokes, b, &Spoke::end)->is_curve()) {
+            replace(v, cut(a, b), vertices_[v]);
+        }
+    }
+
     // \param beyond a vertex towards which curves from both ends may go on as one: between them there is no room
     void contract(Index a, Index b, Index beyond = kNone) {
         std::vector<Spoke> spokes = spokes_of(a);
@@ -381,14 +408,31 @@ class WallRemesher {
         }
         const Spoke& edge = *std::ranges::find(spokes, b, &Spoke::end);
         const bool is_short = distance(vertices_[a], vertices_[b]) < kLeastCurve * size_;
-        if (place != VertexPlace::kInside && (!edge.is_curve() || (place == VertexPlace::kCorner && !is_short))) {
+        // What lies between curves as near to each other, as between the seams of walls that cross, goes with them.
+        if (!is_short && place != VertexPlace::kInside && (!edge.is_curve() || place == VertexPlace::kCorner)) {
             return;
         }
         const Point to =
             place == other_place && place != VertexPlace::kCorner ? midpoint(vertices_[a], vertices_[b]) : vertices_[b];
-        if (is_short || (keeps_shape(a, b, spokes, beyond) && may_contract(a, b, to))) {
+        if (is_short ? keeps_holes(a, b, spokes) : keeps_shape(a, b, spokes, beyond) && may_contract(a, b, to)) {
             replace(a, b, to);
         }
+    }
+
+    // Does no hole of three edges close that is wider than a short edge is long?
+    bool keeps_holes(Index a, Index b, const std::vector<Spoke>& spokes) const {
+        const std::vector<Spoke> others = spokes_of(b);
+        return std::ranges::none_of(spokes, [&](const Spoke& spoke) {
+            const auto other = std::ranges::find(others, spoke.end, &Spoke::end);
+            return other != others.end() && spoke.count == 1 && other->count == 1 &&
+                   std::ranges::none_of(at_[a], [&](Index t) { return has_corners(t, b, spoke.end); }) &&
+                   distance(vertices_[a], vertices_[spoke.end]) >= kLeastCurve * size_;
+        });
+    }
+
+    bool has_corners(Index t, Index b, Index c) const {
+        return std::ranges::find(triangles_[t], b) != triangles_[t].end() &&
+               std::ranges::find(triangles_[t], c) != triangles_[t].end();
     }
 
     // Does the surface stay what it is, with all its curves, if `a` becomes `b`?

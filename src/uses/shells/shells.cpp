@@ -305,7 +305,8 @@ class WallMiddle {
         });
     }
 
-    // Means over near triangles: those of single small ones are noisy. At the rim of a curved wall they are one-sided.
+    // Means over near triangles, but for slivers, whose normals say nothing: those of all that come near tell which
+    // ones these are. At the rim of a curved wall means are one-sided, the less so the nearer the triangles are.
     void find_normals() {
         const TriangleMesh& mesh = bvh_->mesh;
         normals_.resize(mesh.triangles.size());
@@ -313,19 +314,22 @@ class WallMiddle {
             normals_.size(),
             [&](std::size_t t) {
                 const Point center = centroid_of(mesh, t);
-                const Point own = area_vector_of(mesh, t);
                 const double reach = kNearby * 0.5 * thickness_;
                 Box box;
                 box.extend(center - Point{reach, reach, reach});
                 box.extend(center + Point{reach, reach, reach});
-                Point sum = own;
+                Point around;
+                for_each_near_box(*bvh_, box, [&](Index other) { around = around + area_vector_of(mesh, other); });
+                around = unit(around);
+                Point near;
                 for_each_near_box(*bvh_, box, [&](Index other) {
                     const Point vector = area_vector_of(mesh, other);
-                    if (distance(centroid_of(mesh, other), center) < reach && dot(vector, own) > 0.0) {
-                        sum = sum + vector;
+                    if (distance(centroid_of(mesh, other), center) < reach &&
+                        dot(vector, around) > kSameDirection * norm(vector)) {
+                        near = near + vector;
                     }
                 });
-                normals_[t] = unit(sum);
+                normals_[t] = norm(near) > 0.0 ? unit(near) : around;
             },
             std::size_t{64});
     }
