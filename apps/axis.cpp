@@ -718,6 +718,9 @@ Command axis_command(CommandLine program) {
                   "All as in the paper: --sampling uniform --union polar --clean 0 --dense")
         .excludes(union_option)
         .excludes(dense)
+        .excludes(command.option("--sampling"))
+        .excludes(command.option("--clean"))
+        .excludes(command.option("--clean-abs"))
         .value_text(" ");
     command.add_flag("--no-filter", options->is_unfiltered, "Remove no sheets").excludes(angle).value_text(" ");
     command

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "options.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
 #include "scaleaxis/load.hpp"
 #include "scaleaxis/medial_axis.hpp"
@@ -29,6 +30,9 @@ BallsOrAxis read_balls_or_axis(const std::filesystem::path& path, bool takes_bal
     if (!takes_balls_only && file_kind(path) == FileKind::kAxis) {
         const MedialComplex axis = read_axis(path, scale);
         return {Envelope(axis), axis.vertices.size()};
+    }
+    if (scale) {
+        throw InvalidOption("--scale has no effect on balls, which have none: leave it out");
     }
     std::vector<Ball> balls = read_union(path);
     const std::size_t count = balls.size();

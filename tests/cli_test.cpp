@@ -481,6 +481,8 @@ INSTANTIATE_TEST_SUITE_P(
         WrongUsage{"SamplingOfTheCrust",
                    {"balls", "box.off", "-o", "out.ply", "--points", "crust", "--sampling", "uniform"},
                    "--sampling"},
+        WrongUsage{"CleanedAsInThePaper", axis_with({"--paper", "--clean", "0.1"}), "--clean excludes --paper"},
+        WrongUsage{"AdaptiveAsInThePaper", axis_with({"--paper", "--sampling", "adaptive"}), "--paper"},
         WrongUsage{"UnknownUnion", axis_with({"--union", "square"}), "square not in {polar,fitted}"},
         WrongUsage{"UnknownSolid", axis_with({"--solid", "foo"}), "foo not in {auto,winding,wrap,thicken}"},
         WrongUsage{"SkipWithASharedPage",
@@ -2183,6 +2185,8 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     expect_error_line(skeleton({"-o", "ring.swc", "--sections"}), "--sections has no effect on .swc");
     expect_error_line(skeleton({"-o", "ring.swc", "--root", "1,2"}), "--root takes X,Y,Z");
     expect_error_line(run({"mesh", "box.off", "-o", "x.ply"}), "box.off: its format, .off, is none of balls: .ply");
+    expect_error_line(run_with_input({"mesh", "-", "-o", "x.ply", "--scale", "1.5"}, "0 0 0 1\n1 0 0 1\n"),
+                      "--scale has no effect on balls");
     expect_error_line(skeleton({"-o", "ring.swc", "--parts", "x.ply", "--path", "2,0,0", "0,-2,0"}), "--path");
     EXPECT_EQ(skeleton({"-o", "ring.swc", "--path", "2,0,0"}).status, 2);
 }
