@@ -97,9 +97,9 @@ SCALEAXIS_EXPORT MeshObjects read_objects(const FileBytes& file);
 SCALEAXIS_EXPORT TriangleMesh joined(std::vector<MeshObject> objects);
 
 /// Points from text (`x y z` or `x y z nx ny nz` a line; .xyz, .pts, .pwn), tables (.csv, .tsv), LAS, PCD or VTK, and
-/// the vertices of OBJ, OFF, PLY and STL; with normals, if the file has them. Of six columns of text the last three may be
-/// colours. Coordinates need not be finite: `prepare` leaves such points out. \throws FileError naming the line or the
-/// point, and what is wrong
+/// the vertices of OBJ, OFF, PLY and STL; with normals, if the file has them. Of six columns of text the last three may
+/// be colours. Coordinates need not be finite: `prepare` leaves such points out. \throws FileError naming the line or
+/// the point, and what is wrong
 SCALEAXIS_EXPORT PointCloud read_points(const std::filesystem::path& file);
 SCALEAXIS_EXPORT PointCloud read_points(const FileBytes& file);
 
