@@ -144,8 +144,8 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
         return complex
             .radii[*std::ranges::min_element(complex.faces[f], {}, [&](Index v) { return complex.radii[v]; })];
     };
-    // Whether the flood has crossed a seam, its level, the face that it enters, and the radius of the wall that it
-    // comes from, if any.
+    // Whether the flood has crossed a seam, its level, the face that it enters, and the least radius of the face of a
+    // wall that it comes from, if any.
     using Entry = std::tuple<bool, double, Index, double>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> front;
     for (Index f = 0; f < count; ++f) {
@@ -154,7 +154,7 @@ Flags in_walls(const MedialComplex& complex, const Flags& is_core) {
             return at_edge[e].size() == 1 && mean_ball(complex, complex.edges[e]).radius < radii[f];
         };
         if (is_core[f] != 0 || std::ranges::any_of(complex.face_edges[f], is_outlet)) {
-            front.emplace(false, radii[f], f, is_core[f] != 0 ? radii[f] : 0.0);
+            front.emplace(false, radii[f], f, is_core[f] != 0 ? least_radius(f) : 0.0);
         }
     }
     Flags is_flooded(is_core);
@@ -465,11 +465,13 @@ MedialComplex without_flaps(const MedialComplex& walls) {
 MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
     // Where four sheets meet there are clusters of short seams and tiny faces, up to 0.05 radii long where δ is 0.7
     // radii: sheets that cross would stay joined at the ends of their seam.
-    MedialComplex walls =
-        without_short_edges_at_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))), kRadiusError);
-    const auto reaches = each_of<double>(walls.radii, [](double radius) { return kNearby * radius; });
-    walls = without_slivers(with_seams_to_borders(std::move(walls), reaches), kInfinity);
-    return without_flaps(without_short_edges_at_seams(std::move(walls), kRadiusError));
+    const auto with_whole_seams = [](const MedialComplex& walls) {
+        MedialComplex result = without_short_edges_at_seams(walls, kRadiusError);
+        const auto reaches = each_of<double>(result.radii, [](double radius) { return kNearby * radius; });
+        return with_seams_to_borders(std::move(result), reaches);
+    };
+    const MedialComplex walls = with_whole_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))));
+    return without_flaps(with_whole_seams(without_slivers(walls, kInfinity)));
 }
 
 Midsurface midsurface_of(const MedialComplex& complex, const Solid* solid, const MidsurfaceOptions& options,
