@@ -29,7 +29,7 @@ namespace {
 constexpr double kLeastBulge = 0.02;
 
 // Of a mesh with short edges. While it is made it takes 2 GB, and to measure it takes minutes.
-constexpr double kMostTriangles = 2e7;
+constexpr int kMostTriangles = 20'000'000;
 
 // The boundary of a mask is known to half a voxel, so that a wall of two voxels may be thinner or thicker by half.
 constexpr double kResolvedVoxels = 2.0;
