@@ -202,19 +202,21 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
     return worst;
 }
 
+void find_kind(Source& source) {
+    if (!source.images && !source.meshes && !source.file.empty() && !fs::is_directory(source.file)) {
+        source.readable = std::make_shared<const ReadableFile>(source.file, source.options.format);
+        source.is_axis = !source.options.load.kind &&
+                         reading(source, [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
+    }
+}
+
 std::vector<Source> sources_of_one(const fs::path& input, const SourceOptions& options) {
     std::vector<Input> inputs;
     if (!input.empty()) {
         inputs.push_back({input, {}});
     }
     std::vector<Source> sources = sources_of(inputs, options);
-    for (Source& source : sources) {
-        if (!source.images && !source.meshes && !source.file.empty() && !fs::is_directory(source.file)) {
-            source.readable = std::make_shared<const ReadableFile>(source.file, options.format);
-            source.is_axis = !options.load.kind &&
-                             reading(source, [](const fs::path& path) { return file_kind(path); }) == FileKind::kAxis;
-        }
-    }
+    std::ranges::for_each(sources, find_kind);
     return sources;
 }
 

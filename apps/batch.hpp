@@ -69,6 +69,9 @@ Status run_sources(const std::vector<Source>& sources, const SourceOptions& sour
                    const CommonOptions& options, Json head, const std::stop_token& cancel,
                    const std::function<SourceResult(std::size_t, const Listener&)>& work);
 
+/// Finds out whether a source is an axis that is there already, and keeps what is read only once.
+void find_kind(Source& source);
+
 /// The sources of a command that takes one input, a solid or an axis that is there already, several with
 /// `--each-label` or `--each-object`. \param input empty: none \throws InvalidOption
 std::vector<Source> sources_of_one(const std::filesystem::path& input, const SourceOptions& options);

@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 constexpr double kShareOfAxis = 0.6;  // of the time
 
 struct FiltrationRunOptions {
-    fs::path input;
+    std::optional<fs::path> input;
     SourceOptions source;
     std::string output;
     std::string output_format;
@@ -51,11 +51,13 @@ struct FiltrationRunOptions {
 };
 
 Source single_source(const FiltrationRunOptions& options) {
-    const std::vector<Source> sources = sources_of_one(options.input, options.source);
+    std::vector<Source> sources =
+        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
     if (sources.size() > 1) {
         throw InvalidOption("one solid is needed, and these are " + std::to_string(sources.size()) +
                             ": name one file, and one label or object in it");
     }
+    find_kind(sources.front());
     return sources.front();
 }
 
@@ -207,7 +209,7 @@ Status run_filtration_of(FiltrationRunOptions options, const Source& source, con
 Status run_filtration(const FiltrationRunOptions& options, const std::stop_token& cancel) {
     const Source source = single_source(options);
     if (source.is_axis) {
-        check_unused(options.source, "an axis that is there already", {"--format"});
+        check_unused_beside_axis(options.source);
     }
     return telling_source(source, [&] { return run_filtration_of(options, source, cancel); });
 }

@@ -106,7 +106,7 @@ void find_surfaces(const MedialComplex& complex, const Solid* solid, const Midsu
 
 FoundMidsurface of_stored_axis(const MidsurfaceCommandOptions& options, const fs::path& path,
                                const Listener& listener) {
-    check_unused(options.source, "an axis that is there already", {"--format"});
+    check_unused_beside_axis(options.source);
     FoundMidsurface outcome;
     Stopwatch watch;
     MedialComplex complex = read_axis(path);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "outputs.hpp"
 
-#include <algorithm>
 #include <array>
-#include <cctype>
 #include <charconv>
 #include <iostream>
 #include <map>
@@ -12,6 +10,7 @@
 #include "base/files.hpp"
 #include "inputs.hpp"
 #include "io/output_file.hpp"
+#include "io/text_reader.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -87,8 +86,7 @@ bool is_stdout(const fs::path& file) { return file == kStdout; }
 std::string format_of(const fs::path& file, const std::string& format) {
     std::string name = format.empty() ? file.extension().string() : format;
     name.erase(0, name.starts_with('.') ? 1 : 0);
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return name;
+    return io::to_lower(name);
 }
 
 std::string written_format(const fs::path& file, const std::string& format, const std::string& otherwise) {
@@ -144,22 +142,11 @@ void check_output(const fs::path& file, const OutputCheck& check) {
     }
 }
 
-namespace {
-
-/// The extension of the format of a file, in lower case and with its dot. \param format as `written_format` has it
-std::string extension_of(const fs::path& file, const std::string& format) {
-    std::string extension = format.empty() ? file.extension().string() : "." + format;
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
-
-}  // namespace
-
 OutputCheck axis_output_check(const std::string& format, bool has_polygons) {
     return [=](const fs::path& file) {
         const std::string written = written_format(file, format);
         check_axis_output(file, written);
-        if (has_polygons && extension_of(file, written) != ".ply") {
+        if (has_polygons && format_of(file, written) != "ply") {
             throw InvalidOption("--polygons is for PLY, but " + file.string() +
                                 " is of another format: VTP and OBJ have polygons anyway, the others triangles");
         }
@@ -169,7 +156,7 @@ OutputCheck axis_output_check(const std::string& format, bool has_polygons) {
 void write_axis_file(const fs::path& file, const MedialComplex& complex, const std::string& format, bool has_polygons,
                      const Execution& execution) {
     AxisFileOptions options{.has_polygons = has_polygons};
-    if (const std::string extension = extension_of(file, format); extension == ".ply" || extension == ".vtp") {
+    if (const std::string kind = format_of(file, format); kind == "ply" || kind == "vtp") {
         options.vertex_values.push_back({"erosion_thickness", erosion_thickness(complex, execution).thickness});
     }
     write_axis(file, complex, format, options);

@@ -94,7 +94,7 @@ Skeleton derived(Skeleton skeleton, const CurveOptions& options, double diagonal
 }
 
 FoundSkeleton of_stored_axis(const CurveOptions& options, const fs::path& path, const Listener& listener) {
-    check_unused(options.source, "an axis that is there already", {"--format"});
+    check_unused_beside_axis(options.source);
     FoundSkeleton outcome;
     Stopwatch watch;
     outcome.complex = read_axis(path, options.has_scale ? std::optional(options.scale) : std::nullopt);

@@ -276,6 +276,10 @@ void check_unused(const SourceOptions& options, const std::string& what, const s
     }
 }
 
+void check_unused_beside_axis(const SourceOptions& options, const std::vector<std::string>& used) {
+    check_unused(options, "an axis that is there already", used);
+}
+
 Json to_json(const SourceOptions& options) {
     const LoadOptions& load = options.load;
     const FunctionChoice& function = options.function;

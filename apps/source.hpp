@@ -55,6 +55,8 @@ void add_source_options(CommandLine command, SourceOptions& options, const std::
 /// That no option for solids is given which has no effect. \param what the input is, as a message goes on
 /// \param used those that have one \throws InvalidOption
 void check_unused(const SourceOptions& options, const std::string& what, const std::vector<std::string>& used);
+/// The same for an axis that is there already.
+void check_unused_beside_axis(const SourceOptions& options, const std::vector<std::string>& used = {"--format"});
 
 Json to_json(const SourceOptions& options);
 

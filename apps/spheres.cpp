@@ -40,7 +40,7 @@ namespace fs = std::filesystem;
 constexpr Range kEffortRange{0.01, 1000.0};
 
 struct SpheresOptions {
-    fs::path input;
+    std::optional<fs::path> input;
     SourceOptions source;
     std::string output;
     std::string output_format;
@@ -220,7 +220,7 @@ Spheres spheres_of_input(const SpheresOptions& options, Source source, const Lis
     return spheres_of(name, loaded.solid.get(), std::move(loaded.samples), options, loaded.left_out, execution);
 }
 
-bool is_urdf(const fs::path& file) { return lower_extension(file) == ".urdf"; }
+bool is_urdf(const fs::path& file) { return format_of(file, "") == "urdf"; }
 bool is_robot(const fs::path& file) { return is_urdf(file) || is_xacro(file); }
 
 std::string extension_for(const Source& source) { return is_robot(source.file) ? "urdf" : "json"; }
@@ -293,16 +293,19 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
     if (options.is_inside && options.count && options.error) {
         throw InvalidOption("--inside takes either --count or --error, not both: balls inside stick out nowhere");
     }
-    const std::vector<Source> sources = is_robot(options.input) ? sources_of({{options.input, {}}}, options.source)
-                                                                : sources_of_one(options.input, options.source);
+    std::vector<Source> sources =
+        sources_of(options.input ? expanded({*options.input}) : std::vector<Input>(), options.source);
+    if (sources.size() != 1 && !is_each(options.source)) {
+        throw InvalidOption("one input is needed, and these are " + std::to_string(sources.size()));
+    }
     std::vector<fs::path> files;
     std::vector<Output> outputs;
-    for (const Source& source : sources) {
+    for (Source& source : sources) {
         const bool has_links = is_robot(source.file);
         if (has_links) {
             check_unused(options.source, "a robot, whose links are meshes", {"--solid", "--opening", "--thickness"});
-        } else if (source.is_axis) {
-            check_unused(options.source, "an axis that is there already", {"--format"});
+        } else if (find_kind(source); source.is_axis) {
+            check_unused_beside_axis(options.source);
         }
         for (const auto& [name, is_given] :
              {std::pair{"--package", !options.packages.empty()}, std::pair{"--total", options.total.has_value()},

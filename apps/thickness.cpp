@@ -225,11 +225,10 @@ ThicknessFiles files_of(const ThicknessCommandOptions& options, const Source& so
 /// An axis that is there already, or that of the solid.
 MeasuredSolid measured_solid(const ThicknessCommandOptions& options, const Source& source, const Listener& listener) {
     if (source.is_axis) {
-        std::vector<std::string> used{"--format"};
-        if (options.surface.empty()) {  // of the envelope
-            used.insert(used.end(), {"--delta", "--delta-abs"});
-        }
-        check_unused(options.source, "an axis that is there already", used);
+        // Without a surface that of the envelope is made.
+        check_unused_beside_axis(options.source, options.surface.empty()
+                                                     ? std::vector<std::string>{"--format", "--delta", "--delta-abs"}
+                                                     : std::vector<std::string>{"--format"});
         Stopwatch watch;
         MeasuredSolid subject = reading(source, [&](const fs::path& path) {
             return read_axis_and_surface(options, path, listener.execution({0.0, 0.9}));

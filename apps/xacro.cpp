@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstdio>
 #include <memory>
 
+#include "outputs.hpp"
 #include "scaleaxis/errors.hpp"
 
 #if __has_include(<spawn.h>)
@@ -19,13 +19,7 @@ namespace scaleaxis::app {
 
 namespace fs = std::filesystem;
 
-std::string lower_extension(const fs::path& file) {
-    std::string extension = file.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    return extension;
-}
-
-bool is_xacro(const fs::path& file) { return lower_extension(file) == ".xacro"; }
+bool is_xacro(const fs::path& file) { return format_of(file, "") == "xacro"; }
 
 #if __has_include(<spawn.h>)
 

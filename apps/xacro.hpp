@@ -9,9 +9,6 @@
 
 namespace scaleaxis::app {
 
-/// The extension of a file, in lower case and with its dot.
-std::string lower_extension(const std::filesystem::path& file);
-
 /// Is the file named as xacro's are?
 bool is_xacro(const std::filesystem::path& file);
 

@@ -1368,6 +1368,14 @@ TEST_F(CommandLine, ReadsPipes) {
     EXPECT_EQ(spheres.status, 0) << spheres.err;
     EXPECT_TRUE(contains(spheres.err, "left out")) << spheres.err;
     EXPECT_FALSE(contains(spheres.out, "100.0 % of the surface")) << spheres.out;
+    // A folder or a list may stand for one file.
+    std::filesystem::create_directory(folder_ / "one");
+    std::filesystem::copy(folder_ / "box.off", folder_ / "one" / "box.off");
+    std::ofstream(folder_ / "list.txt") << "box.off\n";
+    for (const std::string input : {"one", "@list.txt"}) {
+        EXPECT_EQ(run({"spheres", input, "--count", "2", "-o", "few.json"}).status, 0) << input;
+        EXPECT_EQ(run({"filtration", input, "-o", "nested.ply"}).status, 0) << input;
+    }
     // As a solid, and as an axis that is there already: what it is has to be known first.
     const std::string axis = content(folder_ / "file.ply");
     for (const Arguments& command : {Arguments{"skeleton", "-", "-o", "out.swc"},

@@ -272,8 +272,7 @@ class ChainWalk {
 
 // By how much an end is a limb, if not less than 0: the disc that the fire has burnt at its tip has to stick out of all
 // discs along the other curves at its junction, by its radius and by a part of theirs; in the solid, since grown balls
-// hide limbs. \param chain from the tip to the
-// junction
+// hide limbs. \param chain from the tip to the junction
 double limb_margin(const Burnt& burnt, const ChainWalk& walk, const Chain& chain, double significance) {
     const MedialComplex& complex = burnt.complex;
     const Index tip = chain.front();

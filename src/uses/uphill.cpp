@@ -144,18 +144,16 @@ class Hill {
         TangentPlanes planes(length, slope_ * length);
         planes.add({start.gradient, 0.0});
         Point direction = first_direction;
-        double most = length;
-        for (int k = 0; k < kDirections && most > slope_ * length; ++k) {
+        for (int k = 0; k < kDirections && planes.most() > slope_ * length; ++k) {
             const Depth next = depth_near(start, start.place + length * direction);
             const double gain = next.value - start.value;
             if (gain > slope_ * length) {
-                return {next, most};
+                return {next, planes.most()};
             }
             planes.add({next.gradient, gain - length * dot(next.gradient, direction)});
-            most = planes.most();
             direction = planes.direction();
         }
-        return {std::nullopt, most};
+        return {std::nullopt, planes.most()};
     }
 
    private:

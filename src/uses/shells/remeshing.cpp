@@ -425,14 +425,9 @@ class WallRemesher {
         return std::ranges::none_of(spokes, [&](const Spoke& spoke) {
             const auto other = std::ranges::find(others, spoke.end, &Spoke::end);
             return other != others.end() && spoke.count == 1 && other->count == 1 &&
-                   std::ranges::none_of(at_[a], [&](Index t) { return has_corners(t, b, spoke.end); }) &&
+                   std::ranges::none_of(triangles_at(a, b), [&](Index t) { return apex(t, a, b) == spoke.end; }) &&
                    distance(vertices_[a], vertices_[spoke.end]) >= kLeastCurve * size_;
         });
-    }
-
-    bool has_corners(Index t, Index b, Index c) const {
-        return std::ranges::find(triangles_[t], b) != triangles_[t].end() &&
-               std::ranges::find(triangles_[t], c) != triangles_[t].end();
     }
 
     // Does the surface stay what it is, with all its curves, if `a` becomes `b`?
