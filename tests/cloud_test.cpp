@@ -18,6 +18,7 @@
 
 #include "base/random.hpp"
 #include "executions.hpp"
+#include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
 #include "scaleaxis/crust.hpp"
 #include "scaleaxis/distance.hpp"
@@ -509,6 +510,49 @@ TEST(MovingLeastSquares, ErodesEdgesLittle) {
         sum += dot(edge - *p, out);
     }
     EXPECT_LT(sum / kPlaces, 0.1 * prepared.report.spacing);
+}
+
+// Points scattered at random over two arms of a square, with the normals of the faces: beside an edge some of one face
+// may be missing, and those of the other one are the nearest to places far away, which their planes have behind them.
+TEST(MovingLeastSquares, HasNothingInsideFarBeyondAnEdge) {
+    const auto to_box = [](const Point& p, const Point& high) {
+        const Point q{std::abs(p.x - 0.5 * high.x) - 0.5 * high.x, std::abs(p.y - 0.5 * high.y) - 0.5 * high.y,
+                      std::abs(p.z - 0.5 * high.z) - 0.5 * high.z};
+        return norm(Point{std::max(q.x, 0.0), std::max(q.y, 0.0), std::max(q.z, 0.0)}) +
+               std::min(0.0, std::max({q.x, q.y, q.z}));
+    };
+    const ImplicitSolid angle({{-0.1, -0.1, -0.1}, {4.1, 1.1, 4.1}}, [&](const Point& p) {
+        return std::min(to_box(p, {4, 1, 1}), to_box(p, {1, 1, 4}));
+    });
+    const TriangleMesh faces = prism({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}}, 1.0);  // in x and z, along y
+    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        PointCloud cloud;
+        for (const auto& [a, b, c] : faces.triangles) {
+            const auto at = [&](Index v) {
+                return Point{faces.vertices[v].x, faces.vertices[v].z, faces.vertices[v].y};
+            };
+            const Point normal = cross(at(c) - at(a), at(b) - at(a));
+            for (int i = 0; i < 120.0 * norm(normal); ++i) {
+                const double u = std::sqrt(random_unit(seed, cloud.points.size(), 0));
+                const double v = random_unit(seed, cloud.points.size(), 1);
+                cloud.points.push_back(at(a) + u * (at(b) - at(a)) + u * v * (at(c) - at(b)));
+                cloud.normals.push_back((1.0 / norm(normal)) * normal);
+            }
+        }
+        const PreparedCloud prepared = prepare(cloud);
+        const auto solid = cloud_solid(prepared);
+        for (std::uint64_t i = 0; i < 20000; ++i) {
+            const Point p{4.0 * random_unit(seed, i, 2), random_unit(seed, i, 3), 4.0 * random_unit(seed, i, 4)};
+            if (angle.value(p) > 4.0 * prepared.report.spacing) {
+                ASSERT_FALSE(solid->inside(p)) << p.x << ' ' << p.y << ' ' << p.z;
+            }
+        }
+        const SampledUnion made = sampled_union(*solid, {.tolerance = 0.05});
+        for (const Ball& ball : made.balls.balls) {
+            ASSERT_LT(ball.radius + angle.value(ball.center), 6.0 * prepared.report.spacing);
+        }
+    }
 }
 
 TEST(Points, AreThinnedWhereTheyAreDense) {

@@ -36,8 +36,8 @@ constexpr double kCloudSeedsPerSquare = 9.0;
 // The first thinning of seeds, before they are projected, in spacings.
 constexpr double kFirstThinning = 1.03;
 
-// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, the plane
-// at the nearest point alone.
+// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, planes
+// alone.
 constexpr double kNear = 0.5;
 
 // The same for the height above this plane: what is so high is no part of the surface, whatever its exact distance.
@@ -46,6 +46,10 @@ constexpr double kHigh = 0.4;
 
 // Of places farther away than the support, a point that is so much farther than the nearest one serves as well.
 constexpr double kHardlyFarther = 1.03;
+
+// A place is as high above the plane at such a point as it is far, but for the 3 % and for noise. Where it is lower
+// than this part of that, the point lies around an edge, and its plane tells nothing.
+constexpr double kUpright = 0.9;
 
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kProjectionStep = 0.25;
@@ -132,7 +136,6 @@ class MovingLeastSquares final : public PointwiseSolid {
           spacings_(tree_.points.size()),
           radii_(tree_.points.size()),
           planes_(tree_.points.size()),
-          far_planes_(tree_.points.size()),
           warnings_(cloud.report.warnings()) {
         for (std::size_t i = 0; i < tree_.points.size(); ++i) {
             normals_[i] = cloud.cloud.normals[tree_.order[i]];
@@ -141,12 +144,7 @@ class MovingLeastSquares final : public PointwiseSolid {
             largest_radius_ = std::max(largest_radius_, radii_[i]);
         }
         for_each_index(
-            planes_.size(),
-            [&](std::size_t i) {
-                planes_[i] = plane_at(i);
-                far_planes_[i] = far_plane_at(i);
-            },
-            std::size_t{64});
+            planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
     }
 
     Box bounds() const override { return hull_.box; }
@@ -310,21 +308,6 @@ class MovingLeastSquares final : public PointwiseSolid {
         return {normal, dot(normal, p) - sphere.height};
     }
 
-    /// The plane that tells the side of a place far away whose nearest point is point `i`. Where surfaces meet in an
-    /// edge, it is between them: such a place may lie behind the plane of one of them, and yet outside.
-    Plane far_plane_at(std::size_t i) const {
-        const double radius = radii_[i];
-        Point sum;
-        for_each_point_near(tree_, tree_.points[i], radius, [&](Index k, double squared) {
-            sum = sum + weight(squared, radius * radius) * normals_[k];
-        });
-        const double length = norm(sum);
-        const Plane& plane = planes_[i];
-        const Point normal = length > 0.0 ? (1.0 / length) * sum : plane.normal;
-        const double height = dot(plane.normal, tree_.points[i]) - plane.offset;
-        return {normal, dot(normal, tree_.points[i] - height * plane.normal)};
-    }
-
     /// Does a point lie on the hull where that is the surface?
     bool is_closed_by_hull(const Point& p) const {
         return std::abs(hull_.distance_beyond(p)) < 1e-9 * hull_.box.diagonal() && open_value(p).height < 0.0;
@@ -345,9 +328,14 @@ class MovingLeastSquares final : public PointwiseSolid {
         const NearPoint nearest = near_point(tree_, p, largest_radius_, kHardlyFarther);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
-        const Plane& plane = far_planes_[nearest.position];
+        const Plane& plane = planes_[nearest.position];
         const double at_least = nearest_distance > radius ? nearest_distance / kHardlyFarther : nearest_distance;
         Value result{dot(plane.normal, p) - plane.offset, at_least - kNear * radius, radius, plane.normal};
+        if (nearest_distance > kNear * radius && std::abs(result.height) < kUpright * nearest_distance) {
+            const Sphere mean = mean_plane_at(p, radius);
+            result.height = mean.height;
+            result.gradient = mean.gradient;
+        }
         const double share = std::min({1.0, (radius - nearest_distance) / (radius - kNear * radius),
                                        (kHigh * radius - std::abs(result.height)) / (kHigh * radius - kLow * radius)});
         if (share > 0.0) {
@@ -358,6 +346,29 @@ class MovingLeastSquares final : public PointwiseSolid {
         return result;
     }
 
+    /// Points around a place, and how much they count: far ones by how much farther they are than the nearest one.
+    template <class Visit>
+    void for_each_neighbor(const Point& p, const NearPoint& nearest, double radius, const Visit& visit) const {
+        const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
+        for_each_point_near(tree_, p, std::sqrt(radius * radius + shift),
+                            [&](Index k, double squared) { visit(k, weight(squared - shift, radius * radius)); });
+    }
+
+    /// The mean of the planes through the points nearest to `p`, across their normals. Beyond an edge it has the
+    /// sides in between: a place may lie behind the plane of one of them, and yet outside.
+    Sphere mean_plane_at(const Point& p, double radius) const {
+        Sphere mean;
+        double sum = 0.0;
+        for_each_neighbor(p, nearest_point(tree_, p), radius, [&](Index k, double fourth_power) {
+            // Points of one side may be missing nearby: those farther away count, too.
+            const double w = std::sqrt(std::sqrt(fourth_power));
+            sum += w;
+            mean.height += w * dot(normals_[k], p - tree_.points[k]);
+            mean.gradient = mean.gradient + w * normals_[k];
+        });
+        return {mean.height / sum, (1.0 / sum) * mean.gradient};
+    }
+
     /// That of `p` from the sphere fitted to the points around it.
     Sphere sphere_at(const Point& p, const NearPoint& nearest, double radius) const {
         struct Neighbor {
@@ -366,11 +377,8 @@ class MovingLeastSquares final : public PointwiseSolid {
         };
         static thread_local std::vector<Neighbor> neighbors;
         neighbors.clear();
-        // Far points count by how much farther they are than the nearest one.
-        const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
         Point mean;
-        for_each_point_near(tree_, p, std::sqrt(radius * radius + shift), [&](Index k, double squared) {
-            const double w = weight(squared - shift, radius * radius);
+        for_each_neighbor(p, nearest, radius, [&](Index k, double w) {
             neighbors.push_back({k, w});
             mean = mean + w * normals_[k];
         });
@@ -515,7 +523,6 @@ class MovingLeastSquares final : public PointwiseSolid {
     std::vector<double> radii_;  // of the kernels
     double largest_radius_ = 0.0;
     std::vector<Plane> planes_;
-    std::vector<Plane> far_planes_;
 
     std::vector<Diagnostic> warnings_;
 };
