@@ -293,6 +293,19 @@ TEST(Thickness, OfThinPlacesBesideThickOnes) {
     }
 }
 
+TEST(Thickness, DoesNotEndInAVoidThatTheAxisHasLost) {
+    const TriangleMesh ball = test::ball_mesh(1.0, 30);
+    const Thickness thickness(axis_of(ball));
+    TriangleMesh void_of_ball = test::ball_mesh(0.05, 30);
+    for (Point& p : void_of_ball.vertices) {
+        p = p + Point{0.0, 0.0, 0.02};
+    }
+    const auto solid = mesh_solid(test::together(ball, test::turned_inside_out(void_of_ball)));
+    for (const PointThickness& found : thickness.at_surface(ball.vertices, *solid)) {
+        EXPECT_GT(found.thickness, 0.9);  // between the void and the surface, 0.93 at least
+    }
+}
+
 TEST(Thickness, OfAKnifeIsThin) {
     // A prism over an isosceles triangle whose sharp edge, along z, is at the origin.
     const double half = std::tan(15.0 * std::numbers::pi / 180.0);

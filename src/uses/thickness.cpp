@@ -30,6 +30,7 @@
 #include "spatial/slab_tree.hpp"
 #include "uses/ascent.hpp"
 #include "uses/uphill.hpp"
+#include "uses/walls/opposite_sides.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -391,6 +392,9 @@ class ThicknessData {
     ThicknessData(MedialComplex complex, double angle) : slope_(cosine_of_degrees(0.5 * angle)) {
         // On the tip of a knife the balls are points, which no factor makes larger.
         inflation_ = kSmallLength * box_of_balls(complex).diagonal();
+        for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+            largest_ = complex.radii[v] > largest_.radius ? ball_at(complex, v) : largest_;
+        }
         const Slabs slabs = sorted_slabs(complex, angle);
         all_ = build_slab_tree(inflated(slabs.all, inflation_));
         if (angle > 0.0 && !slabs.between.empty()) {
@@ -406,7 +410,13 @@ class ThicknessData {
         Ball top;
     };
 
-    PointThickness at(const Point& p, const Solid* solid, Hint& hint) const {
+    // Where the largest ball of the axis leads to: in thick parts all ways do.
+    Ball top_of(const Solid* solid) const {
+        return solid != nullptr && slope_ < 1.0 ? uphill(*solid, largest_, slope_) : Ball();
+    }
+
+    // \param top see `top_of`
+    PointThickness at(const Point& p, const Solid* solid, const Ball& top, Hint& hint) const {
         PointThickness result;
         const double nearest = hint.foot ? distance(hint.foot->center, p) - hint.foot->radius : kInfinity;
         const Ball foot = nearest_slab(all_, p, nearest + kRelativeRounding * (std::abs(nearest) + norm(p))).near.ball;
@@ -416,9 +426,11 @@ class ThicknessData {
         if (solid != nullptr && slope_ < 1.0) {
             if (hint.start != result.ball) {
                 hint.start = result.ball;
-                hint.top = uphill(*solid, result.ball, slope_);
+                hint.top = uphill(*solid, result.ball, slope_, kInfinity, top);
             }
-            result.ball = hint.top;
+            // What the axis has lost, as a void smaller than delta, may lie in the ball that it starts with.
+            const bool is_lost = hint.top.radius < (1.0 - kSmallPart) * result.ball.radius;
+            result.ball = is_lost ? ball_seen_from(p, *solid, result.ball) : hint.top;
             result.thickness = 2.0 * result.ball.radius;
             return result;
         }
@@ -445,6 +457,9 @@ class ThicknessData {
     }
 
    private:
+    Ball ball_seen_from(const Point& p, const Solid& solid, const Ball& ball) const {
+        return ball_between_sides(solid, p, unit(ball.center - p), slope_, ball.radius);
+    }
     double first_to_reach(const SlabTree& tree, const Point& p) const {
         return deflated(least_grown_slab(tree, p).ball);
     }
@@ -453,6 +468,7 @@ class ThicknessData {
 
     double slope_ = 0.0;      // of the radius, from which on a ball lies in an edge
     double inflation_ = 0.0;  // of all balls in the trees
+    Ball largest_;
     SlabTree all_;
     std::optional<SlabTree> between_;  // nothing: all balls are meant
 };
@@ -475,13 +491,14 @@ std::vector<PointThickness> thickness_at(const ThicknessData& data, std::span<co
         if (solid != nullptr) {
             solid->prepare_nearest();
         }
+        const Ball top = data.top_of(solid);
         std::vector<PointThickness> result(points.size());
         for_each_index((points.size() + kPointsAtOnce - 1) / kPointsAtOnce,
                        [&](std::size_t part) {
                            ThicknessData::Hint hint;
                            const std::size_t end = std::min(points.size(), (part + 1) * kPointsAtOnce);
                            for (std::size_t i = part * kPointsAtOnce; i < end; ++i) {
-                               result[i] = data.at(points[i], solid, hint);
+                               result[i] = data.at(points[i], solid, top, hint);
                            }
                        },
                        std::size_t{1});

@@ -131,6 +131,13 @@ class Hill {
         return depth(place, nearest, [&] { return known.value > way || solid_.inside(place); });
     }
 
+    // Is the end of another way a place that a step may lead to, or nearer than the last step?
+    bool leads_to(const Depth& at, const Ball& end) const {
+        const double way = distance(at.place, end.center);
+        return end.radius > at.value && ((way <= kSteps.front() * at.value && end.radius - at.value > slope_ * way) ||
+                                         way <= kSteps.back() * at.value);
+    }
+
     struct Step {
         std::optional<Depth> place;  // deeper by more than the slope; nothing: there is none
         double most = 0.0;           // upper bound of the gain
@@ -182,11 +189,14 @@ class Hill {
 
 }  // namespace
 
-Ball uphill(const Solid& solid, const Ball& start, double slope, double most) {
+Ball uphill(const Solid& solid, const Ball& start, double slope, double most, const Ball& known) {
     const Hill hill(solid, slope);
     Depth at = hill.depth_at(start.center);
     Point direction = at.gradient;
     for (int count = 0; count < kMostSteps && at.value < most; ++count) {
+        if (hill.leads_to(at, known)) {
+            return known;
+        }
         Hill::Step step;
         for (const double part : kSteps) {
             const double length = std::max(part * at.value, hill.first_step());

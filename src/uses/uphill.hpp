@@ -15,6 +15,8 @@ namespace scaleaxis::inline v1 {
 /// seen from its centre, grows by cos(a): so balls leave convex edges and corners, and stay between opposite sides.
 /// \param solid knows the nearest points of its boundary
 /// \param slope in (0, 1) \param most radius of interest: a ball as large stays where it is
-Ball uphill(const Solid& solid, const Ball& start, double slope, double most = std::numeric_limits<double>::infinity());
+/// \param known the end of another way, if any: whoever comes near it goes there, and needs not look further
+Ball uphill(const Solid& solid, const Ball& start, double slope, double most = std::numeric_limits<double>::infinity(),
+            const Ball& known = {});
 
 }  // namespace scaleaxis::inline v1
