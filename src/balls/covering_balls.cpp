@@ -2,8 +2,8 @@
 #include "balls/covering_balls.hpp"
 
 #include <algorithm>
-#include <cstdint>
 #include <functional>
+#include <limits>
 #include <numeric>
 
 #include "base/parallel.hpp"
@@ -12,21 +12,67 @@
 
 namespace scaleaxis::inline v1 {
 
+namespace {
+
+constexpr float kFar = std::numeric_limits<float>::infinity();
+
+bool is_empty(const BoxTree::Node& node, int child) { return node.bounds[0][0][child] > node.bounds[1][0][child]; }
+
+void empty(BoxTree::Node& node, int child) {
+    node.count[child] = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        node.bounds[0][axis][child] = kFar;
+        node.bounds[1][axis][child] = -kFar;
+    }
+}
+
+/// Takes the points in a ball out of a part of a tree, so that no other ball meets them again: many nearly equal balls
+/// would each visit all that they cover. \returns whether there were any
+bool take_out(PointTree& tree, BoxTree::Node& node, const Ball& ball, const FramedPoint& center, Float4 squared_reach) {
+    const Mask4 is_hit = squared_distances(node, center) <= squared_reach;
+    const double squared_radius = ball.radius * ball.radius;
+    bool any = false;
+    for (int k = 0; k < BoxTree::kWidth; ++k) {
+        if (is_hit[k] == 0) {
+            continue;
+        }
+        if (node.count[k] == 0) {
+            BoxTree::Node& child = *(&node + node.first[k]);
+            if (take_out(tree, child, ball, center, squared_reach)) {
+                any = true;
+                if (is_empty(child, 0) && is_empty(child, 1) && is_empty(child, 2) && is_empty(child, 3)) {
+                    empty(node, k);
+                }
+            }
+            continue;
+        }
+        const auto points = std::span(tree.points).subspan(node.first[k], node.count[k]);
+        const auto taken = std::ranges::partition(
+            points, [&](const Point& p) { return squared_distance(p, ball.center) > squared_radius; });
+        if (!taken.empty()) {
+            any = true;
+            node.count[k] -= static_cast<Index>(taken.size());
+            if (node.count[k] == 0) {
+                empty(node, k);
+            }
+        }
+    }
+    return any;
+}
+
+}  // namespace
+
 std::vector<Index> covering_balls(std::span<const Ball> balls, std::span<const Point> points, double reach) {
     const auto by_size = sorted_indices(
         balls.size(), [&](Index i) { return balls[i].radius; }, std::greater<>());
-    const PointTree tree = build_point_tree(points);
-    std::vector<std::uint8_t> is_covered(points.size());
+    PointTree left = build_point_tree(points);
     std::vector<Index> chosen;
     CancellationPoint cancellation_point(64);
     for (const Index i : by_size) {
         cancellation_point();
-        bool covers_more = false;
-        for_each_point_near(tree, balls[i].center, balls[i].radius + reach, [&](Index position, double) {
-            covers_more = covers_more || is_covered[position] == 0;
-            is_covered[position] = 1;
-        });
-        if (covers_more) {
+        const Ball wide{balls[i].center, balls[i].radius + reach};
+        const FramedPoint center(left, wide.center);
+        if (take_out(left, left.nodes.front(), wide, center, squared_reach(left, wide.radius, center))) {
             chosen.push_back(i);
         }
     }

@@ -35,12 +35,17 @@ NearPoint near_point(const PointTree& tree, const Point& p, double exact_within,
 /// as given. `result` is for memory that several calls use.
 void nearest_points(const PointTree& tree, const Point& p, std::size_t count, std::vector<NearPoint>& result);
 
+/// What the squared distances of a point to boxes are compared with, so that none within `radius` is missed.
+inline Float4 squared_reach(const PointTree& tree, double radius, const FramedPoint& p) {
+    const float reach = static_cast<float>(radius * tree.scale) * (1.0F + BoxTree::kPadding) + p.slack;
+    return Float4{} + reach * reach;
+}
+
 /// Calls `visit(position, squared distance)` for all points at most `radius` away from `p`.
 template <class Visit>
 void for_each_point_near(const PointTree& tree, const Point& p, double radius, const Visit& visit) {
     const FramedPoint framed(tree, p);
-    const float reach = static_cast<float>(radius * tree.scale) * (1.0F + BoxTree::kPadding) + framed.slack;
-    const Float4 limit = Float4{} + reach * reach;
+    const Float4 limit = squared_reach(tree, radius, framed);
     const auto hit = [&](const BoxTree::Node& node) { return squared_distances(node, framed) <= limit; };
     const double squared_radius = radius * radius;
     box_tree_details::for_each_leaf(tree, hit, [&](Index first, Index count) {
