@@ -157,6 +157,9 @@ Status run_filtration_of(FiltrationRunOptions options, const Source& source, con
     FilteredSolid subject =
         source.is_axis ? FilteredSolid{reading(source, [](const fs::path& path) { return read_axis(path); }), {}, {}}
                        : subject_of(options, source, bar, cancel);
+    if (const std::optional<Diagnostic> grown = grown_axis(subject.axis)) {
+        warn_above(bar, source.name)(*grown);
+    }
     std::vector<StageCost>& costs = subject.costs;
     watch.lap("axis");
     Filtration nested = filtration(std::move(subject.axis), options.filtration,

@@ -57,6 +57,10 @@ struct Filtration {
 SCALEAXIS_EXPORT Filtration filtration(MedialComplex complex, const FiltrationOptions& options = {},
                                        const Execution& execution = {});
 
+/// The warning that the scale of a complex is not 1: the levels of its filtration are not those of the solid, since
+/// what has vanished up to its scale is missing in all of them; nothing where it is 1.
+SCALEAXIS_EXPORT std::optional<Diagnostic> grown_axis(const MedialComplex& complex);
+
 /// Throws if a filtration is not what `Filtration` says: scales that are as many as the elements, and elements that do
 /// not vanish before those that they belong to.
 /// \throws UnusableInput, also as `check` of its complex

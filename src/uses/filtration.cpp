@@ -305,6 +305,16 @@ MedialComplex cut(const Filtration& filtration, double scale) {
     return level_at(filtration, scale);
 }
 
+std::optional<Diagnostic> grown_axis(const MedialComplex& complex) {
+    if (complex.scale == 1.0) {
+        return std::nullopt;
+    }
+    Words message;
+    message << "the axis is of s = " << complex.scale
+            << ": what had vanished up to there is missing at all scales of its filtration; take an axis of s = 1";
+    return Diagnostic{.code = "filtration.grown_axis", .message = message.str()};
+}
+
 std::optional<Diagnostic> unknown_level(const Filtration& filtration, double scale) {
     if (!(scale > filtration.largest_scale)) {
         return std::nullopt;

@@ -151,7 +151,9 @@ def filtration(
     """
     with telling(progress) as tell:
         core = core_of(as_complex(complex))
-        return _filtration_of(_core.filtration(core, largest_scale, tolerance, threads, tell))
+        nested, warnings = _core.filtration(core, largest_scale, tolerance, threads, tell)
+    warn(warnings_of(warnings))
+    return _filtration_of(nested)
 
 
 @checked

@@ -102,6 +102,10 @@ Fields fields_of(Filtration nested) {
     return fields;
 }
 
+std::vector<Diagnostic> listed(const std::optional<Diagnostic>& warning) {
+    return warning ? std::vector{*warning} : std::vector<Diagnostic>();
+}
+
 void bind_filtration(nb::module_& m) {
     m.def("vanishing_scales",
           [](const BallsIn& given, double largest_scale, double tolerance, int threads, Tell progress) {
@@ -111,17 +115,18 @@ void bind_filtration(nb::module_& m) {
           });
     m.def("filtration", [](const Fields& complex, double largest_scale, double tolerance, int threads, Tell progress) {
         MedialComplex given = complex_of(complex);
-        return fields_of(run({threads, std::move(progress)}, [&](const Execution& execution) {
-            return filtration(std::move(given), {largest_scale, tolerance}, execution);
-        }));
+        const std::string warnings = to_json(listed(grown_axis(given)));
+        return std::make_pair(
+            fields_of(run({threads, std::move(progress)},
+                          [&](const Execution& execution) {
+                              return filtration(std::move(given), {largest_scale, tolerance}, execution);
+                          })),
+            warnings);
     });
     m.def("cut", [](const Fields& complex, const ScalesIn& scales, double scale) {
         const Filtration given = filtration_of(complex, scales);
-        std::vector<Diagnostic> warnings;
-        if (const std::optional<Diagnostic> unknown = unknown_level(given, scale)) {
-            warnings.push_back(*unknown);
-        }
-        return std::make_pair(fields_of(unlocked([&] { return cut(given, scale); })), to_json(warnings));
+        return std::make_pair(fields_of(unlocked([&] { return cut(given, scale); })),
+                              to_json(listed(unknown_level(given, scale))));
     });
     // Levels and plateau as JSON; as CSV, as SVG.
     m.def("profile", [](const Fields& complex, const ScalesIn& scales, double largest_scale, Index count,

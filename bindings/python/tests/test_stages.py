@@ -480,6 +480,8 @@ def test_compact_axes_and_their_envelopes(box):
 
 def test_filtration(box, tmp_path):
     axis = scaleaxis.axis(box, delta=0.05, scale=1)
+    with pytest.warns(scaleaxis.Warning, match="the axis is of s = 1.5"):
+        scaleaxis.filtration(scaleaxis.axis(box, delta=0.05, scale=1.5))
     nested = scaleaxis.filtration(axis)
     assert np.array_equal(nested.complex.vertices, axis.complex.vertices)
     assert np.all(nested.vertex_scales >= nested.ball_scales) and np.isinf(nested.vertex_scales).any()
