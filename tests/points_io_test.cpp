@@ -156,7 +156,8 @@ TEST_F(PointsIo, ReadsTables) {
         "\"x\",\"y\",\"z\",\"text\"\n0.5,-1.25,2,\"a, b\"\n\"3\",4,5,\n-6,7,8.5,c\n",
         "//X;Y;Z;R\n0.5;-1.25;2;255\n3;4;5;0\n-6;7;8.5;1\n",
         "# x, y, z\n0.5,-1.25,2\n3,4,5\n-6,7,8.5\n",
-        "0.5,-1.25,2,255,0,0\n3,4,5,1,2,3\n-6,7,8.5,0,0,0\n"};
+        "0.5,-1.25,2,255,0,0\n3,4,5,1,2,3\n-6,7,8.5,0,0,0\n",
+        "0.5,-1.25,2,1,0,0\n3,4,5,0.25,0.5,0.125\n-6,7,8.5,0,0,0\n"};
     for (const std::string& content : plain) {
         for (const std::string name : {"a.csv", "a.tsv", "a.txt", "a"}) {
             const fs::path file = write(name, content);

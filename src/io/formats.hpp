@@ -62,8 +62,8 @@ ReadPoints read_point_table;  // columns separated by commas, semicolons or tabs
 ReadPoints read_las_points;   // laser scans, of the American Society for Photogrammetry and Remote Sensing
 ReadPoints read_pcd_points;   // the Point Cloud Library's, ascii, binary or compressed
 
-/// Drops normals that are colours, as the last three of six numbers without names may be: whole numbers up to 255, not
-/// those of normals along the axes.
+/// Drops normals that are colours, as the last three of six numbers without names may be: none is negative, and they
+/// are whole numbers up to 255, or up to 1 and not all of length 1.
 void drop_colors(PointCloud& cloud);
 
 using ReadBalls = std::vector<Ball>(std::string_view content);

@@ -139,16 +139,22 @@ Point vector_of(const TextReader& reader, const std::vector<std::string_view>& c
 }  // namespace
 
 void drop_colors(PointCloud& cloud) {
+    constexpr double kDigits = 0.1;  // no program writes normals with fewer than two
     double largest = 0.0;
+    bool are_whole = true;
+    bool are_units = true;
     for (const Point& v : cloud.normals) {
         for (const double value : {v.x, v.y, v.z}) {
-            if (!(value >= 0.0 && value <= 255.0 && value == std::floor(value))) {
+            if (!(value >= 0.0 && value <= 255.0)) {
                 return;
             }
+            are_whole = are_whole && value == std::floor(value);
             largest = std::max(largest, value);
         }
+        const double length = norm(v);
+        are_units = are_units && (length == 0.0 || std::abs(length - 1.0) < kDigits);
     }
-    if (largest > 1.0) {
+    if (largest > 1.0 ? are_whole : !are_units) {
         cloud.normals.clear();
     }
 }
