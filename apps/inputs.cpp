@@ -8,6 +8,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "io/text_reader.hpp"
 #include "readable.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/io.hpp"
@@ -71,8 +72,7 @@ std::vector<Input> files_of_list(const fs::path& list) {
     std::size_t number = 0;
     for (std::string line; std::getline(text, line);) {
         ++number;
-        line.erase(line.find_last_not_of(" \t\r") + 1);
-        line.erase(0, line.find_first_not_of(" \t"));
+        line = io::trimmed(io::text_beginning(line));
         if (line.empty() || line.starts_with('#')) {
             continue;
         }

@@ -65,8 +65,8 @@ struct MidsurfaceFiles {
 };
 
 bool is_mesh_format(const fs::path& file, const std::string& format) {
-    const std::string extension = format.empty() ? file.extension().string() : "." + format;
-    return extension == ".stl" || extension == ".off";
+    const std::string kind = format_of(file, format);
+    return kind == "stl" || kind == "off";
 }
 
 void check_midsurface_output(const fs::path& file, const std::string& format) {

@@ -143,8 +143,9 @@ FoundSkeleton of_solid(const CurveOptions& options, const Source& source, const 
     if (options.leads_to_openings) {
         const auto* mesh = std::get_if<MeshReport>(&input.input);
         if (mesh == nullptr || mesh->holes.empty()) {
-            throw InvalidOption("--to-openings has no effect on " + source.name.string() +
-                                ", no hole of which was closed: leave it out");
+            throw InvalidOption(
+                "--to-openings has no effect on " + source.name.string() +
+                (mesh == nullptr ? ", which is no mesh: leave it out" : ", no hole of which was closed: leave it out"));
         }
         const double spacing = curve_options.spacing > 0.0 ? curve_options.spacing : kNodeSpacing * axis.diagonal;
         outcome.skeleton = led_to_openings(std::move(outcome.skeleton), mesh->holes, spacing);
@@ -191,6 +192,10 @@ SkeletonFiles files_of(const CurveOptions& options, const Source& source, std::v
     if (options.has_sections && format != "vtp" && format != "json") {
         throw InvalidOption("--sections has no effect on ." + format +
                             ": write .vtp or .json, which have room for them");
+    }
+    if (!options.root.empty() && (format == "graphml" || format == "ply")) {
+        throw InvalidOption("--root has no effect on ." + format +
+                            ", which has no trees: write .swc, .csv, .vtp or .json");
     }
     if (!options.parts.empty()) {
         files.parts = add(output_pattern(options.parts, "parts", false), with_format(check_parts_output, {}));
@@ -296,14 +301,15 @@ Command skeleton_command(CommandLine program) {
     add_choice(command, "--radius", options->radius, kRadiusNames,
                "Of a node: 'inscribed': of the largest ball in the solid around it; 'mean': mean distance to the\n"
                "surface in the plane normal to the branch, which noise does not make smaller\n[default inscribed]");
-    command.add_flag("--to-openings", options->leads_to_openings,
-                     "Lead curves on to the middles of the holes of an open surface, which are closed, as of vessels\n"
-                     "that are cut: by themselves they end a radius before");
+    command.add_flag(
+        "--to-openings", options->leads_to_openings,
+        "Lead curves on to the middles of the holes of an open mesh, which are closed, as of vessels that\n"
+        "are cut: by themselves they end a radius before");
     command
         .add_option(
             "--root", options->root,
             "Trees of SWC and CSV, and centerlines of VTP, lead away from the node nearest to this place, as an\n"
-            "inlet or a soma; of other parts, and by default, from the thickest end")
+            "inlet or a soma, which JSON names; of other parts, and by default, from the thickest end")
         .delimiter(',')
         .expected(1)
         .value_text("X,Y,Z");

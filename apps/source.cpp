@@ -438,7 +438,7 @@ void check_can_fit(const LoadedSolid& input, const std::optional<UnionKind>& kin
 }
 
 Diagnostic unused_sampling_options() {
-    return {"points.unused_options", "--delta and --sampling had no effect: the points are the samples (see method)"};
+    return {"points.unused_options", "the points are the samples (see method): delta and sampling have no effect"};
 }
 
 TriangleMesh take_surface(LoadedSolid& input, const std::optional<Length>& delta, std::uint64_t seed,

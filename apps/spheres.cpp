@@ -52,7 +52,7 @@ struct SpheresOptions {
     std::optional<Length> delta;
     Sizing sizing = Sizing::kAdaptive;
     std::optional<Index> total;
-    Index large = 1;
+    std::optional<Index> large;  ///< 1 if it is not given
     std::vector<std::string> clip;
     std::vector<std::string> rest;
     std::vector<std::string> xacro;
@@ -249,7 +249,7 @@ SourceResult run_source(const SpheresOptions& options, const Source& source, con
     }
     const std::string format = written_format(output, options.output_format, extension_for(source));
     if (robot && is_robot_format(output, format)) {
-        write_robot(output, format, *robot, links, options.large);
+        write_robot(output, format, *robot, links, options.large.value_or(1));
     } else {
         write_spheres(output, format, robot ? robot->name() : stem_of(source.name), links, pairs);
     }
@@ -328,6 +328,9 @@ Status run_spheres(SpheresOptions options, const std::stop_token& cancel) {
         files.push_back(expand(
             output_pattern(options.output, "spheres", false, spheres_extension(options.output_format), extension),
             source.name, 1.0));
+        if (options.large && format_of(files.back(), options.output_format) != "vamp") {
+            throw InvalidOption("--large is for --output-format vamp: leave it out");
+        }
         outputs.push_back({files.back(), source.name});
         check_output(files.back(), [&](const fs::path& file) {
             check_spheres_output(file, written_format(file, options.output_format, extension), has_links);

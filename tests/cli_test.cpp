@@ -1054,6 +1054,7 @@ TEST_F(CommandLine, SpheresOfARobotForPlanners) {
     EXPECT_EQ(with({"--count", "2", "--output-format", "ballpark", "-o", "all/"}).status, 0);
     EXPECT_TRUE(contains(content(folder_ / "all/gripper-spheres.json"), "\"ignore_pairs\""));
     EXPECT_EQ(with({"--count", "2", "--output-format", "vamp", "--large", "2", "-o", "all/"}).status, 0);
+    expect_error_line(with({"--count", "2", "--large", "2", "-o", "few.yml"}), "--large is for --output-format vamp");
     for (const std::string file : {"_spherized.urdf", "_spherized_1.urdf", "_spherized.srdf", ".json"}) {
         EXPECT_TRUE(fs::exists(folder_ / ("all/gripper" + file))) << file;
     }
@@ -1589,7 +1590,7 @@ TEST_F(CommandLine, AFolderStandsForItsFiles) {
 TEST_F(CommandLine, AListNamesItsInputs) {
     fs::create_directories(folder_ / "lists");
     write(folder_ / "lists" / "a b.off", box_off(0, 0, 0, 2));
-    write(folder_ / "lists" / "list.txt", "# models\n\n  a b.off \r\n../box.off\nmissing.off\n");
+    write(folder_ / "lists" / "list.txt", "\xEF\xBB\xBF# models\n\n  a b.off \r\n../box.off\nmissing.off\n");
     const Outcome outcome = run({"axis", "@lists/list.txt", "-o", "out/", "--delta", "0.1", "--stats", "-"});
     EXPECT_EQ(outcome.status, 3);
     EXPECT_TRUE(contains(outcome.err, "lists/missing.off: ")) << outcome.err;
@@ -1797,6 +1798,10 @@ TEST_F(CommandLine, CutsAFiltrationAtAnyScale) {
     // That of the axis at s = 1 that is stored already is the same.
     ASSERT_EQ(run({"axis", "box.off", "-o", "axis.ply", "--delta", "0.05", "--scale", "1", "-q"}).status, 0);
     ASSERT_EQ(run({"filtration", "axis.ply", "-o", "again.ply", "--largest-scale", "20", "-q"}).status, 0);
+    ASSERT_EQ(run({"axis", "box.off", "-o", "grown.ply", "--delta", "0.05", "--scale", "1.2", "-q"}).status, 0);
+    const Outcome grown = run({"filtration", "grown.ply", "-o", "x.ply", "-q"});
+    EXPECT_EQ(grown.status, 0);
+    EXPECT_TRUE(contains(grown.err, "the axis is of s = 1.2")) << grown.err;
     EXPECT_EQ(run({"filter", "axis.ply", "-o", "x.ply", "--scale", "11"}).status, 2);
     expect_error_line(run({"filtration", "axis.ply", "-o", "x.ply", "--label", "1"}), "--label has no effect");
     expect_error_line(run({"skeleton", "axis.ply", "-o", "x.swc", "--iso", "1"}), "--iso has no effect");
@@ -2184,6 +2189,10 @@ TEST_F(CommandLine, SkeletonsAsCenterlinesAndTrees) {
     ASSERT_EQ(path["branches"].size(), 1u);
     EXPECT_NEAR(path["branches"][0]["length"].get<double>(), 3.14, 0.2);  // a quarter, and not three
     EXPECT_NEAR(path["nodes"][0]["place"][0].get<double>(), 2.0, 0.1);
+    EXPECT_EQ(path["root"], 0);
+    for (const std::string file : {"ring.graphml", "ring.PLY"}) {
+        expect_error_line(skeleton({"-o", file, "--root", "0,2,0"}), "--root has no effect on .");
+    }
     for (const Json& node : path["nodes"]) {
         EXPECT_NEAR(node["section"]["area"].get<double>(), 0.785, 0.05);
         EXPECT_EQ(node["section"]["is_closed"], true);
@@ -2255,6 +2264,7 @@ TEST_F(CommandLine, MidsurfacesHaveSheetsWithThickness) {
     const Json result = Json::parse(outcome.out);
     EXPECT_EQ(result["schema"], "scaleaxis.midsurface/1");
     const Json& found = result["midsurface"];
+    EXPECT_EQ(run({"midsurface", "plate.off", "--delta", "0.05", "-o", "mid.STL", "-q"}).status, 0);
     ASSERT_EQ(found["sheets"].size(), 1u);
     EXPECT_NEAR(found["sheets"][0]["area"].get<double>(), 15.0, 0.3);
     EXPECT_NEAR(found["sheets"][0]["mean_thickness"].get<double>(), 0.5, 0.005);

@@ -133,7 +133,8 @@ void write_json_skeleton(OutputFile& out, const Skeleton& skeleton) {
                         {"nodes", nodes},
                         {"edges", skeleton.edges},
                         {"branches", branches},
-                        {"faces", faces}};
+                        {"faces", faces},
+                        {"root", skeleton.root == kNone ? Json(nullptr) : Json(skeleton.root)}};
     out.text(document.dump(), '\n');
 }
 

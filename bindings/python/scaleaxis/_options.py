@@ -45,6 +45,17 @@ RETIRED = ("features", "tight")
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
+def length_of(relative: float | None, absolute: float | None, name: str) -> tuple[float, bool] | None:
+    """A length of two options, `name` and `name_abs`, and whether it is absolute; None if neither is given. Raises
+    InvalidOption for both.
+    """
+    if relative is not None and absolute is not None:
+        raise InvalidOption(f"{name} and {name.removesuffix('_')}_abs are the same option: leave one of them out")
+    if absolute is not None:
+        return absolute, True
+    return None if relative is None else (relative, False)
+
+
 def stood_for(given: Any) -> Any:
     """What a result of this package stands for as an input: its complex, mesh, balls or solid. Others: themselves."""
     while hasattr(type(given), "_stands_for"):

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _arrays, _core
 from ._arrays import Floats
-from ._options import Seed, checked
+from ._options import Seed, checked, length_of
 from ._progress import Progress, part_of, telling
 from .adapt import as_balls
 from .data import Samples
@@ -151,8 +151,9 @@ def spheres(
 
     Raises InvalidOption, UnusableInput, FileError, Cancelled.
     """
-    if (error is not None and error_abs is not None) or all(option is None for option in (count, error, error_abs)):
-        raise InvalidOption("count is needed, or one of error and error_abs, or both")
+    largest = length_of(error, error_abs, "error")
+    if count is None and largest is None:
+        raise InvalidOption("count, error or error_abs is needed")
     with telling(progress) as tell:
 
         def part(begin: float, end: float) -> dict[str, Any]:
@@ -172,7 +173,7 @@ def spheres(
             assert loaded.samples is not None  # it has one of the two
             shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
         samples, candidates = sampled(shape, 0.32, 0.6)
-        length = error * shape.diagonal if error is not None else error_abs
+        length = None if largest is None else largest[0] if largest[1] else largest[0] * shape.diagonal
         few = few_balls(
             candidates,
             samples.points,

@@ -13,7 +13,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _arrays, _core
-from ._options import Seed, checked
+from ._options import Seed, checked, length_of
 from ._progress import Progress, Tell, part_of, telling
 from .adapt import is_path
 from .data import Topology, complex_of, core_of_samples
@@ -82,14 +82,6 @@ DEFAULTS: Mapping[str, Any] = {
     "clip": False,
 }
 """Of the options that are not None where they are not given."""
-
-
-def _length(relative: float | None, absolute: float | None, name: str) -> Length:
-    if relative is not None and absolute is not None:
-        raise InvalidOption(f"{name} and {name.removesuffix('_')}_abs are the same option: leave one of them out")
-    if absolute is not None:
-        return absolute, True
-    return None if relative is None else (relative, False)
 
 
 def _delta_range(delta: Any, given: tuple[float, float] | None) -> tuple[float, float] | None:
@@ -168,12 +160,12 @@ def axis_options(delta: Any, scale: Any, given: AxisOptions) -> dict[str, Any]:
     options = {**dict.fromkeys(AxisOptions.__annotations__), **DEFAULTS, **given}
 
     def length(name: str) -> Length:
-        return _length(options[name], options[name.removesuffix("_") + "_abs"], name)
+        return length_of(options[name], options[name.removesuffix("_") + "_abs"], name)
 
     default_scale = DEFAULT_SCALE if options["method"] == "scale" else 1.0  # the local methods grow nothing
     precision, vertices = length("error"), options["vertices"]
     return {
-        "delta": _length(None if delta == "auto" else delta, options["delta_abs"], "delta"),
+        "delta": length_of(None if delta == "auto" else delta, options["delta_abs"], "delta"),
         "delta_range": _delta_range(delta, options["delta_range"]),
         "union_kind": options["union"],
         "method": options["method"],

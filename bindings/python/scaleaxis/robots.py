@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 from . import _core
 from ._arrays import Floats
-from ._options import Seed, checked
+from ._options import Seed, checked, length_of
 from ._progress import Progress, telling
 from .adapt import as_balls
 from .covering import Clip, planes_of
@@ -48,20 +48,22 @@ class RobotSpheres:
         return [(first, second, "adjacent" if adjacent else "touches at rest") for first, second, adjacent in pairs]
 
     def write(
-        self, file: str | os.PathLike[str], format: RobotFormat | None = None, *, large: int = _DEFAULT_LARGE
+        self, file: str | os.PathLike[str], format: RobotFormat | None = None, *, large: int | None = None
     ) -> list[Path]:
         """Writes the complete files of a planner beside each other, and returns their names.
 
         format: by the extension if it is not given: .urdf, .srdf (MoveIt), .yml (cuRobo), .json (ballpark, pyroki).
             "vamp" writes NAME_spherized.urdf and .srdf, NAME_spherized_1.urdf and NAME.json.
-        large: for VAMP, so many spheres of each link around the others.
+        large: for VAMP, so many spheres of each link around the others (default 1).
         """
         path = Path(file)
         chosen = format or _BY_EXTENSION.get(path.suffix.lower())
         if chosen is None:
             raise InvalidOption(f"{path}: no format of a robot has this extension; choose one by format")
+        if large is not None and chosen != "vamp":
+            raise InvalidOption(f'large has no effect on the format "{chosen}": leave it out, or choose "vamp"')
         written = []
-        for name, text in self._core.files(self._rows(), chosen, path.stem, large):
+        for name, text in self._core.files(self._rows(), chosen, path.stem, _DEFAULT_LARGE if large is None else large):
             target = path.with_name(name) if chosen == "vamp" else path
             unfinished = target.with_name(target.name + ".part")
             try:
@@ -123,18 +125,18 @@ def robot_spheres(
 
     Raises InvalidOption, UnusableInput, FileError, Cancelled.
     """
-    if sum(option is not None for option in (count, total)) > 1 or (error is not None and error_abs is not None):
-        raise InvalidOption("of count and total one is needed, and of error and error_abs")
-    if count is None and total is None and error is None and error_abs is None:
+    length, is_length = length_of(error, error_abs, "error") or (None, True)
+    if count is None and total is None and length is None:
         raise InvalidOption("count, total, error or error_abs is needed")
+    if total is not None and (count is not None or length is not None):
+        raise InvalidOption("total shares all spheres out: it goes with neither count nor an error")
     file = Path(robot)
     text = _expanded(file, xacro or {}) if file.suffix.lower() == ".xacro" else None
     core = _core.Robot(text, file, [Path(package) for package in packages], dict(rest or {}))
     planes = {link: planes_of(some) for link, some in (clip_planes or {}).items()}
-    length = error if error is not None else error_abs
     with telling(progress) as tell:
         links = _core.robot_spheres(
-            core, inside, count, total, length, error is None, planes, effort, delta, sampling, seed, threads, tell
+            core, inside, count, total, length, is_length, planes, effort, delta, sampling, seed, threads, tell
         )
     warn(warnings_of(core.warnings()))
     return RobotSpheres(

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from . import _core
 from ._arrays import Floats, Ints
-from ._options import Seed, checked, stood_for
+from ._options import Seed, checked, length_of, stood_for
 from ._progress import Progress, telling
 from .adapt import adapted, as_balls, as_mesh, core_of_image, is_path
 from .data import Image, Mesh, Topology, image_of
@@ -21,6 +21,10 @@ from .errors import Place, Warning, warn, warnings_of
 from .files import file_kind
 from .solids import BallUnion, Envelope
 from .stages import Json
+
+# As of `scaleaxis mesh` and `scaleaxis compare`.
+_DELTA = 0.01
+_SPACING = 0.002
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -56,7 +60,7 @@ class UnionMesh:
 @checked
 def mesh(
     balls: Any,
-    delta: float = 0.01,
+    delta: float | None = None,
     *,
     delta_abs: float | None = None,
     seed: Seed = 1,
@@ -67,13 +71,14 @@ def mesh(
 
     balls: N × 4 numbers, a file, a BallUnion, an axis, which should be a dense one (`Axis.mesh` sees to that), or an
     `Envelope`.
-    delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls, or as a length.
+    delta, delta_abs: tolerance of the sampling, relative to the diagonal of the box around the balls (default 0.01), or
+        as a length.
     """
-    tolerance = delta if delta_abs is None else delta_abs
+    tolerance, is_length = length_of(delta, delta_abs, "delta") or (_DELTA, False)
     known = stood_for(balls)
     given = known._core if isinstance(known, Envelope) else as_balls(known)
     with telling(progress) as tell:
-        core = _core.union_mesh(given, tolerance, delta_abs is not None, seed, threads, tell)
+        core = _core.union_mesh(given, tolerance, is_length, seed, threads, tell)
     found = warnings_of(core["warnings"])
     warn(found)
     return UnionMesh(core["vertices"], core["triangles"], json.loads(core["statistics"]), found)
@@ -123,7 +128,7 @@ def _surface_of(given: Surface) -> Floats | tuple[Floats, Ints] | _core.CoreEnve
 def compare(
     a: Surface,
     b: Surface,
-    spacing: float = 0.002,
+    spacing: float | None = None,
     *,
     spacing_abs: float | None = None,
     accuracy: float | None = None,
@@ -134,12 +139,12 @@ def compare(
     """Distances between two surfaces: meshes, unions of balls, files of these, `Envelope`s. (In C++: `surface_distance`.)
 
     spacing, spacing_abs: every point of a surface is at most this far from one whose distance is computed; relative to
-    the diagonal of A, or as a length. accuracy: a length; default: a hundredth of the spacing.
+    the diagonal of A (default 0.002), or as a length. accuracy: a length; default: a hundredth of the spacing.
     """
+    length, is_length = length_of(spacing, spacing_abs, "spacing") or (_SPACING, False)
     surfaces = _surface_of(a), _surface_of(b)
-    length = spacing_abs
-    if length is None:
-        length = spacing * float(np.linalg.norm(np.diff(_core.surface_bounds(surfaces[0]), axis=0)))
+    if not is_length:
+        length *= float(np.linalg.norm(np.diff(_core.surface_bounds(surfaces[0]), axis=0)))
     precision = 0.01 * length if accuracy is None else accuracy
     with telling(progress) as tell:
         sides = _core.surface_distance(*surfaces, length, precision, seed, threads, tell)

@@ -9,6 +9,7 @@ import inspect
 import re
 import types
 import warnings
+from functools import partial
 
 import numpy as np
 import pytest
@@ -162,6 +163,19 @@ def test_numbers_that_no_length_or_share_can_be(box):
         scaleaxis.thin_regions(*box, values, np.nan)
     with pytest.raises(TypeError, match="edge must be a number between 0 and 1, not '0.1'"):
         scaleaxis.thickness(axis, edge="0.1")
+
+
+def test_two_lengths_for_one_option_are_refused(box):
+    balls = np.array([[0.0, 0.0, 0.0, 1.0]])
+    for function, given, name in (
+        (scaleaxis.axis, box, "delta"),
+        (scaleaxis.mesh, balls, "delta"),
+        (partial(scaleaxis.compare, box), balls, "spacing"),
+        (scaleaxis.spheres, box, "error"),
+        (scaleaxis.robot_spheres, "robot.urdf", "error"),
+    ):
+        with pytest.raises(scaleaxis.InvalidOption, match=f"{name} and {name}_abs are the same option"):
+            function(given, **{name: 0.1, f"{name}_abs": 0.1})
 
 
 def test_star_imports_shadow_nothing():

@@ -213,6 +213,8 @@ def test_wrong_robots(gripper, tmp_path):
         scaleaxis.robot_spheres(ROBOT, total=2, **QUICK)
     with pytest.raises(scaleaxis.InvalidOption, match="extension"):
         gripper.write(tmp_path / "few.txt")
+    with pytest.raises(scaleaxis.InvalidOption, match='choose "vamp"'):
+        gripper.write(tmp_path / "few.urdf", large=2)
     with pytest.raises(scaleaxis.FileError, match="cannot be written"):
         gripper.write(tmp_path / "none" / "few.urdf")
     (tmp_path / "two.urdf").write_text(
