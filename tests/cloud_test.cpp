@@ -525,7 +525,7 @@ TEST(MovingLeastSquares, HasNothingInsideFarBeyondAnEdge) {
         return std::min(to_box(p, {4, 1, 1}), to_box(p, {1, 1, 4}));
     });
     const TriangleMesh faces = prism({{0, 0}, {4, 0}, {4, 1}, {1, 1}, {1, 4}, {0, 4}}, 1.0);  // in x and z, along y
-    for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    for (const std::uint64_t seed : {3U, 5U, 6U, 8U}) {  // of ten, those that have such a place
         SCOPED_TRACE("seed " + std::to_string(seed));
         PointCloud cloud;
         for (const auto& [a, b, c] : faces.triangles) {
@@ -548,9 +548,9 @@ TEST(MovingLeastSquares, HasNothingInsideFarBeyondAnEdge) {
                 ASSERT_FALSE(solid->inside(p)) << p.x << ' ' << p.y << ' ' << p.z;
             }
         }
-        const SampledUnion made = sampled_union(*solid, {.tolerance = 0.05});
+        const SampledUnion made = sampled_union(*solid, {.tolerance = 0.01 * solid->bounds().diagonal()});
         for (const Ball& ball : made.balls.balls) {
-            ASSERT_LT(ball.radius + angle.value(ball.center), 6.0 * prepared.report.spacing);
+            ASSERT_LT(ball.radius + angle.value(ball.center), 4.0 * prepared.report.spacing);
         }
     }
 }

@@ -228,7 +228,7 @@ std::vector<std::optional<Point>> nearest_of(std::span<const Point> centers, std
 
 void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& solid, double slack, const Box& bounds,
                FittedBalls& out) {
-    const auto centers = each_of<Point>(balls, &Ball::center);
+    auto centers = each_of<Point>(balls, &Ball::center);
     std::vector<std::uint8_t> sides(balls.size());
     solid.inside(centers, sides);
     std::vector<std::optional<Point>> nearest = nearest_of(centers, balls, solid, out.statistics.queries);
@@ -237,9 +237,12 @@ void fit_batch(std::span<const Ball> balls, std::size_t first, const Solid& soli
         searches[i] = begun(balls[i], sides[i] != 0, nearest[i], slack);
     }
     search_all(searches, balls, solid, bounds, out.statistics.queries);
+    // Where the solid knows nearest points only about, as beside an edge of a cloud, a ball may have left it.
+    std::ranges::transform(searches, centers.begin(), [](const ContactSearch& search) { return search.ball.center; });
+    solid.inside(centers, sides);
     for (std::size_t i = 0; i < balls.size(); ++i) {
         const ContactSearch& search = searches[i];
-        if (search.state == State::kOutside || !(search.ball.radius > 0.0)) {
+        if (search.state == State::kOutside || !(search.ball.radius > 0.0) || sides[i] == 0) {
             ++out.statistics.outside;
             continue;
         }
