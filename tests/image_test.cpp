@@ -293,6 +293,30 @@ TEST(Image, SmoothingKeepsThinParts) {
     EXPECT_NEAR(solid->bounds().max.x, 25.3, 0.3);
 }
 
+// A branch, an island, and a void in the block.
+TEST(Image, SmoothingKeepsWhatItWouldTakeAllOf) {
+    const auto is_in = [](const Point& p, const std::array<int, 3>& low, const std::array<int, 3>& high) {
+        return p.x >= low[0] && p.y >= low[1] && p.z >= low[2] && p.x < high[0] && p.y < high[1] && p.z < high[2];
+    };
+    for (const std::array<int, 2>& size : {std::array{1, 1}, {2, 1}, {1, 2}, {3, 1}, {2, 2}}) {
+        SCOPED_TRACE(std::to_string(size[0]) + " x " + std::to_string(size[1]));
+        const Image mask = sampled(
+            [&](const Point& p) {
+                const bool is_block = is_in(p, {4, 4, 4}, {20, 20, 20}) && !is_in(p, {11, 11, 11}, {13, 13, 13});
+                const bool is_branch = is_in(p, {20, 9, 9}, {34, 9 + size[0], 9 + size[1]});
+                const bool is_island = is_in(p, {28, 28, 28}, {28 + size[0], 30, 28 + size[1]});
+                return is_block || is_branch || is_island ? 1.0 : 0.0;
+            },
+            {40, 40, 40}, {}, {Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}});
+        const Image smooth = smoothed_mask(mask);
+        EXPECT_EQ(topology(smooth, {}), known_topology(2, 0, 1));
+        const auto solid = image_solid(smooth, {});
+        for (Index i = 20; i < 33; ++i) {  // the tip is rounded
+            EXPECT_TRUE(solid->inside({1.0 * i, 8.5 + 0.5 * size[0], 8.5 + 0.5 * size[1]})) << i;
+        }
+    }
+}
+
 /// The volume of a solid, by random points.
 double volume_of(const Solid& solid) {
     const auto [low, high] = solid.bounds();

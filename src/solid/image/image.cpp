@@ -35,7 +35,6 @@ constexpr std::string_view kMaskStage = "mask";
 constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
 constexpr std::size_t kMostLabels = 65535;
 constexpr float kIso = 0.5F;
-constexpr float kTooFar = 0.125F;  // beyond it, for a thin part to be kept
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -119,30 +118,64 @@ void blur(Image& image, const std::vector<float>& weights) {
         std::size_t{1});
 }
 
-/// Is a voxel in no block of 2 x 2 x 2 voxels of its side? The image goes on beyond its border as it is there.
-bool is_thin(const std::array<Index, 3>& sizes, const std::vector<bool>& is_inside, std::size_t voxel) {
+/// Calls `visit(n)` for the voxels around one, up to 26, as long as it returns true.
+template <class Visit>
+bool all_around(const std::array<Index, 3>& sizes, std::size_t voxel, const Visit& visit) {
     const std::size_t width = sizes[0];
     const std::size_t height = sizes[1];
     const std::array<Index, 3> at{static_cast<Index>(voxel % width), static_cast<Index>(voxel / width % height),
                                   static_cast<Index>(voxel / width / height)};
-    const auto is_equal = [&](int block, int corner) {
-        std::array<std::size_t, 3> n{};
-        for (int axis = 0; axis < 3; ++axis) {
-            const Index by = (block >> axis & 1) != 0 ? 1 : -1;
-            n[axis] = std::clamp<Index>(at[axis] + ((corner >> axis & 1) != 0 ? by : 0), 0, sizes[axis] - 1);
-        }
-        return is_inside[(n[2] * height + n[1]) * width + n[0]] == is_inside[voxel];
-    };
-    for (int block = 0; block < 8; ++block) {
-        int corner = 1;
-        while (corner < 8 && is_equal(block, corner)) {
-            ++corner;
-        }
-        if (corner == 8) {
-            return false;
+    std::array<std::array<Index, 2>, 3> range{};
+    for (int axis = 0; axis < 3; ++axis) {
+        range[axis] = {std::max<Index>(0, at[axis] - 1), std::min<Index>(sizes[axis] - 1, at[axis] + 1)};
+    }
+    for (Index k = range[2][0]; k <= range[2][1]; ++k) {
+        for (Index j = range[1][0]; j <= range[1][1]; ++j) {
+            for (Index i = range[0][0]; i <= range[0][1]; ++i) {
+                const std::size_t n = (k * height + j) * width + i;
+                if (n != voxel && !visit(n)) {
+                    return false;
+                }
+            }
         }
     }
     return true;
+}
+
+/// Of the voxels that smoothing has moved to the other side of a level those of parts that it took all of: somewhere no
+/// voxel around is left of their side. Of what sticks out of a larger part, as corners and bumps, some is.
+std::vector<bool> vanished_parts(const Image& image, float level, const std::vector<bool>& is_inside) {
+    std::vector<bool> is_lost(is_inside.size());
+    CancellationPoint cancellation(kVoxelsAtOnce);
+    for (std::size_t i = 0; i < is_lost.size(); ++i) {
+        cancellation();
+        is_lost[i] = is_inside[i] ? image.values[i] < level : image.values[i] > level;
+    }
+    std::vector<bool> is_vanished(is_inside.size());
+    std::vector<std::size_t> waiting;
+    const auto add = [&](std::size_t i) {
+        is_vanished[i] = true;
+        waiting.push_back(i);
+    };
+    for (std::size_t i = 0; i < is_lost.size(); ++i) {
+        cancellation();
+        if (!is_lost[i] || is_vanished[i] ||
+            !all_around(image.sizes, i, [&](std::size_t n) { return is_lost[n] || is_inside[n] != is_inside[i]; })) {
+            continue;
+        }
+        add(i);
+        while (!waiting.empty()) {
+            const std::size_t one = waiting.back();
+            waiting.pop_back();
+            all_around(image.sizes, one, [&](std::size_t n) {
+                if (is_lost[n] && !is_vanished[n] && is_inside[n] == is_inside[one]) {
+                    add(n);
+                }
+                return true;
+            });
+        }
+    }
+    return is_vanished;
 }
 
 /// The part of an image in a box, with a margin where the image has one, of whose values `of(value)` is taken.
@@ -275,16 +308,12 @@ void smooth(Image& image, const std::vector<float>& weights, const Execution& ex
     blur(image, weights);
     report(execution, kMaskStage, 0.6);
     const float level = level_with_volume(image, inside);
-    std::atomic<bool> is_mirrored = false;
+    const std::vector<bool> is_vanished = vanished_parts(image, level, is_inside);
     for_each_index(image.values.size(), [&](std::size_t i) {
         const float difference = image.values[i] - level;
-        const bool is_lost = (is_inside[i] ? difference : -difference) < -kTooFar && is_thin(image.sizes, is_inside, i);
-        image.values[i] = is_lost ? kIso - difference : kIso + difference;
-        if (is_lost) {
-            is_mirrored = true;
-        }
+        image.values[i] = is_vanished[i] ? kIso - difference : kIso + difference;
     });
-    if (is_mirrored) {
+    if (std::ranges::find(is_vanished, true) != is_vanished.end()) {
         const float shift = kIso - level_with_volume(image, inside);
         for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
     }
