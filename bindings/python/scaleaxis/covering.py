@@ -153,7 +153,7 @@ def spheres(
     """
     largest = length_of(error, error_abs, "error")
     if count is None and largest is None:
-        raise InvalidOption("count, error or error_abs is needed")
+        raise InvalidOption("count is needed, or one of error and error_abs, or both")
     with telling(progress) as tell:
 
         def part(begin: float, end: float) -> dict[str, Any]:
