@@ -71,7 +71,7 @@ def test_wrong_options(torus):
         scaleaxis.spheres(torus, 3, error=0.1, inside=True, delta=0.04)
     with pytest.raises(scaleaxis.InvalidOption, match="count is needed"):
         scaleaxis.spheres(torus)
-    with pytest.raises(scaleaxis.InvalidOption, match="one of error"):
+    with pytest.raises(scaleaxis.InvalidOption, match="error and error_abs are the same option"):
         scaleaxis.spheres(torus, error=0.1, error_abs=0.1)
 
 
