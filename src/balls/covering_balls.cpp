@@ -47,11 +47,12 @@ bool take_out(PointTree& tree, BoxTree::Node& node, const Ball& ball, const Fram
             continue;
         }
         const auto points = std::span(tree.points).subspan(node.first[k], node.count[k]);
-        const auto taken = std::ranges::partition(
-            points, [&](const Point& p) { return squared_distance(p, ball.center) > squared_radius; });
-        if (!taken.empty()) {
+        const auto left = std::partition(points.begin(), points.end(), [&](const Point& p) {
+            return squared_distance(p, ball.center) > squared_radius;
+        });
+        if (left != points.end()) {
             any = true;
-            node.count[k] -= static_cast<Index>(taken.size());
+            node.count[k] = static_cast<Index>(left - points.begin());
             if (node.count[k] == 0) {
                 empty(node, k);
             }
