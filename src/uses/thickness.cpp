@@ -392,9 +392,8 @@ class ThicknessData {
     ThicknessData(MedialComplex complex, double angle) : slope_(cosine_of_degrees(0.5 * angle)) {
         // On the tip of a knife the balls are points, which no factor makes larger.
         inflation_ = kSmallLength * box_of_balls(complex).diagonal();
-        for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
-            largest_ = complex.radii[v] > largest_.radius ? ball_at(complex, v) : largest_;
-        }
+        const auto largest = std::ranges::max_element(complex.radii);
+        largest_ = ball_at(complex, static_cast<Index>(largest - complex.radii.begin()));
         const Slabs slabs = sorted_slabs(complex, angle);
         all_ = build_slab_tree(inflated(slabs.all, inflation_));
         if (angle > 0.0 && !slabs.between.empty()) {
@@ -460,6 +459,7 @@ class ThicknessData {
     Ball ball_seen_from(const Point& p, const Solid& solid, const Ball& ball) const {
         return ball_between_sides(solid, p, unit(ball.center - p), slope_, ball.radius);
     }
+
     double first_to_reach(const SlabTree& tree, const Point& p) const {
         return deflated(least_grown_slab(tree, p).ball);
     }

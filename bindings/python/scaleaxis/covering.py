@@ -173,7 +173,9 @@ def spheres(
             assert loaded.samples is not None  # it has one of the two
             shape = union_solid(inner_balls(loaded.samples, **part(0.1, 0.3)), **part(0.3, 0.32))
         samples, candidates = sampled(shape, 0.32, 0.6)
-        length = None if largest is None else largest[0] if largest[1] else largest[0] * shape.diagonal
+        length, is_length = largest or (None, True)
+        if length is not None and not is_length:
+            length *= shape.diagonal
         few = few_balls(
             candidates,
             samples.points,

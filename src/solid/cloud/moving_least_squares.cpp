@@ -65,9 +65,9 @@ double agreement(double cosine) {
     return power4 * power4;
 }
 
-double weight(double squared_distance, double squared_radius) {
-    const double x = std::max(0.0, 1.0 - squared_distance / squared_radius);
-    return x * x * x * x;
+/// 1 at a distance of 0, 0 from the radius on.
+double nearness(double squared_distance, double squared_radius) {
+    return std::max(0.0, 1.0 - squared_distance / squared_radius);
 }
 
 /// The axes, and the diagonals of the faces of a cube and of the cube.
@@ -346,12 +346,12 @@ class MovingLeastSquares final : public PointwiseSolid {
         return result;
     }
 
-    /// Points around a place, and how much they count: far ones by how much farther they are than the nearest one.
+    /// Points around a place, and how near they are: of far ones counts how much farther they are than the nearest one.
     template <class Visit>
     void for_each_neighbor(const Point& p, const NearPoint& nearest, double radius, const Visit& visit) const {
         const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
         for_each_point_near(tree_, p, std::sqrt(radius * radius + shift),
-                            [&](Index k, double squared) { visit(k, weight(squared - shift, radius * radius)); });
+                            [&](Index k, double squared) { visit(k, nearness(squared - shift, radius * radius)); });
     }
 
     /// The mean of the planes through the points nearest to `p`, across their normals. Beyond an edge it has the
@@ -359,9 +359,8 @@ class MovingLeastSquares final : public PointwiseSolid {
     Sphere mean_plane_at(const Point& p, double radius) const {
         Sphere mean;
         double sum = 0.0;
-        for_each_neighbor(p, nearest_point(tree_, p), radius, [&](Index k, double fourth_power) {
-            // Points of one side may be missing nearby: those farther away count, too.
-            const double w = std::sqrt(std::sqrt(fourth_power));
+        // Weights fall slowly: points of one side may be missing nearby, and those farther away count, too.
+        for_each_neighbor(p, nearest_point(tree_, p), radius, [&](Index k, double w) {
             sum += w;
             mean.height += w * dot(normals_[k], p - tree_.points[k]);
             mean.gradient = mean.gradient + w * normals_[k];
@@ -378,7 +377,8 @@ class MovingLeastSquares final : public PointwiseSolid {
         static thread_local std::vector<Neighbor> neighbors;
         neighbors.clear();
         Point mean;
-        for_each_neighbor(p, nearest, radius, [&](Index k, double w) {
+        for_each_neighbor(p, nearest, radius, [&](Index k, double x) {
+            const double w = x * x * x * x;
             neighbors.push_back({k, w});
             mean = mean + w * normals_[k];
         });
