@@ -83,9 +83,10 @@ struct MaskSmoothing {
 /// A grey image of a mask, above 0.5 inside, without its staircase. It is cut down to what surrounds the mask; only
 /// that is copied.
 ///
-/// The mask is smoothed by a Gaussian kernel, and a constant is added that keeps its volume: that of the interpolant
-/// above 0.5 is the volume of the voxels. Voxels of parts and gaps that are one voxel thick (in no block of 2 x 2 x 2
-/// voxels of their side) would be lost: where they end up far on the wrong side they are mirrored back.
+/// The mask is blurred by a Gaussian kernel. What is taken off the values is their mean on the boundary nearby, which
+/// is low where the solid is thin: so thin parts of thick solids keep their volume. Voxels that would take a part with
+/// them, or part one, stay on their side. A constant keeps the volume: that of the interpolant above 0.5 is that of the
+/// voxels.
 /// \throws InvalidOption, Cancelled; UnusableInput if the image is unusable (see `check`) or the mask is empty
 SCALEAXIS_EXPORT Image smoothed_mask(const ImageView& mask, const MaskSmoothing& options = {},
                                      const Execution& execution = {});

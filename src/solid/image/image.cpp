@@ -19,13 +19,11 @@
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
-#include "base/powers.hpp"
 #include "base/text.hpp"
-#include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
 #include "solid/image/canonical_image.hpp"
-#include "solid/image/mask_volume.hpp"
+#include "solid/image/mask_smoothing.hpp"
 #include "spatial/extent.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -34,7 +32,6 @@ namespace {
 constexpr std::string_view kMaskStage = "mask";
 constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
 constexpr std::size_t kMostLabels = 65535;
-constexpr float kIso = 0.5F;
 
 double component(const Point& p, int axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
 
@@ -44,138 +41,6 @@ std::string text_of(const ImageView& image, std::size_t voxel) {
     Words text;
     text << "voxel (" << voxel % width << ", " << voxel / width % height << ", " << voxel / width / height << ')';
     return text.str();
-}
-
-/// Weights of a Gaussian kernel at 0, 1, 2…; their sum with both signs is 1.
-std::vector<float> gaussian_weights(double width) {
-    std::vector<double> weights{1.0};
-    double sum = 1.0;
-    for (int i = 1; i <= std::ceil(3.0 * width); ++i) {
-        weights.push_back(exponential(-0.5 * i * i / (width * width)));
-        sum += 2.0 * weights.back();
-    }
-    return each_of<float>(weights, [&](double weight) { return static_cast<float>(weight / sum); });
-}
-
-/// Convolves rows of `length` values along one axis, many at a time: `count` values beside each other, `stride` apart
-/// along the axis. Beyond the ends the values are those at the ends.
-void convolve(float* values, Index length, std::size_t stride, std::size_t count, const std::vector<float>& weights,
-              std::vector<float>& buffer) {
-    const auto reach = static_cast<Index>(weights.size()) - 1;
-    buffer.resize((length + 2 * reach) * count);
-    for (Index i = -reach; i < length + reach; ++i) {
-        const float* from = values + std::clamp<Index>(i, 0, length - 1) * stride;
-        std::copy_n(from, count, buffer.data() + (i + reach) * count);
-    }
-    if (std::ranges::all_of(buffer, [](float value) { return value == 0.0F; })) {
-        return;  // as most of the box of a thin solid that lies askew
-    }
-    for (Index i = 0; i < length; ++i) {
-        float* to = values + i * stride;
-        const float* middle = buffer.data() + (i + reach) * count;
-        for (std::size_t n = 0; n < count; ++n) {
-            to[n] = weights[0] * middle[n];
-        }
-        for (Index d = 1; d <= reach; ++d) {
-            const float weight = weights[d];
-            const float* left = middle - d * count;
-            const float* right = middle + d * count;
-            for (std::size_t n = 0; n < count; ++n) {
-                to[n] += weight * (left[n] + right[n]);
-            }
-        }
-    }
-}
-
-void blur(Image& image, const std::vector<float>& weights) {
-    const std::size_t width = image.sizes[0];
-    const std::size_t height = image.sizes[1];
-    const std::size_t depth = image.sizes[2];
-    float* const values = image.values.data();
-    constexpr std::size_t kTogether = 64;
-    for_each_index(
-        depth,
-        [&](std::size_t k) {
-            std::vector<float> buffer;
-            float* const slice = values + k * width * height;
-            for (std::size_t j = 0; j < height; ++j) {
-                convolve(slice + j * width, image.sizes[0], 1, 1, weights, buffer);
-            }
-            for (std::size_t i = 0; i < width; i += kTogether) {
-                convolve(slice + i, image.sizes[1], width, std::min(kTogether, width - i), weights, buffer);
-            }
-        },
-        std::size_t{1});
-    for_each_index(
-        height,
-        [&](std::size_t j) {
-            std::vector<float> buffer;
-            for (std::size_t i = 0; i < width; i += kTogether) {
-                convolve(values + j * width + i, image.sizes[2], width * height, std::min(kTogether, width - i),
-                         weights, buffer);
-            }
-        },
-        std::size_t{1});
-}
-
-/// Calls `visit(n)` for the voxels around one, up to 26, as long as it returns true.
-template <class Visit>
-bool all_around(const std::array<Index, 3>& sizes, std::size_t voxel, const Visit& visit) {
-    const std::size_t width = sizes[0];
-    const std::size_t height = sizes[1];
-    const std::array<Index, 3> at{static_cast<Index>(voxel % width), static_cast<Index>(voxel / width % height),
-                                  static_cast<Index>(voxel / width / height)};
-    std::array<std::array<Index, 2>, 3> range{};
-    for (int axis = 0; axis < 3; ++axis) {
-        range[axis] = {std::max<Index>(0, at[axis] - 1), std::min<Index>(sizes[axis] - 1, at[axis] + 1)};
-    }
-    for (Index k = range[2][0]; k <= range[2][1]; ++k) {
-        for (Index j = range[1][0]; j <= range[1][1]; ++j) {
-            for (Index i = range[0][0]; i <= range[0][1]; ++i) {
-                const std::size_t n = (k * height + j) * width + i;
-                if (n != voxel && !visit(n)) {
-                    return false;
-                }
-            }
-        }
-    }
-    return true;
-}
-
-/// Of the voxels that smoothing has moved to the other side of a level those of parts that it took all of: somewhere no
-/// voxel around is left of their side. Of what sticks out of a larger part, as corners and bumps, some is.
-std::vector<bool> vanished_parts(const Image& image, float level, const std::vector<bool>& is_inside) {
-    std::vector<bool> is_lost(is_inside.size());
-    CancellationPoint cancellation(kVoxelsAtOnce);
-    for (std::size_t i = 0; i < is_lost.size(); ++i) {
-        cancellation();
-        is_lost[i] = is_inside[i] ? image.values[i] < level : image.values[i] > level;
-    }
-    std::vector<bool> is_vanished(is_inside.size());
-    std::vector<std::size_t> waiting;
-    const auto add = [&](std::size_t i) {
-        is_vanished[i] = true;
-        waiting.push_back(i);
-    };
-    for (std::size_t i = 0; i < is_lost.size(); ++i) {
-        cancellation();
-        if (!is_lost[i] || is_vanished[i] ||
-            !all_around(image.sizes, i, [&](std::size_t n) { return is_lost[n] || is_inside[n] != is_inside[i]; })) {
-            continue;
-        }
-        add(i);
-        while (!waiting.empty()) {
-            const std::size_t one = waiting.back();
-            waiting.pop_back();
-            all_around(image.sizes, one, [&](std::size_t n) {
-                if (is_lost[n] && !is_vanished[n] && is_inside[n] == is_inside[one]) {
-                    add(n);
-                }
-                return true;
-            });
-        }
-    }
-    return is_vanished;
 }
 
 /// The part of an image in a box, with a margin where the image has one, of whose values `of(value)` is taken.
@@ -191,14 +56,13 @@ Image cropped(const CanonicalImage& image, IndexBox box, Index margin, const Of&
         part.sizes[axis] = high[axis] - low[axis] + 1;
         part.origin = part.origin + static_cast<double>(low[axis]) * image.steps[axis];
     }
-    part.values.reserve(static_cast<std::size_t>(part.sizes[0]) * part.sizes[1] * part.sizes[2]);
+    part.values.resize(static_cast<std::size_t>(part.sizes[0]) * part.sizes[1] * part.sizes[2]);
+    std::vector<float> memory;
+    auto to = part.values.begin();
     for (Index k = low[2]; k <= high[2]; ++k) {
         stop_if_cancelled();
         for (Index j = low[1]; j <= high[1]; ++j) {
-            const float* value = image.first + low[0] * image.strides[0] + j * image.strides[1] + k * image.strides[2];
-            for (Index i = low[0]; i <= high[0]; ++i, value += image.strides[0]) {
-                part.values.push_back(of(*value));
-            }
+            to = std::ranges::transform(image.row(j, k, memory).subspan(low[0], part.sizes[0]), to, of).out;
         }
     }
     return part;
@@ -207,17 +71,15 @@ Image cropped(const CanonicalImage& image, IndexBox box, Index margin, const Of&
 /// The part of a mask that is not empty, with a margin where the image has one.
 /// \throws UnusableInput if all of it is empty
 Image cropped_mask(const CanonicalImage& image, Index margin) {
-    const auto [count, low, high] = inside_voxels(image, [](float value) { return value > kIso; });
+    const auto [count, low, high] = inside_voxels(image, [](float value) { return value > kMaskLevel; });
     if (count == 0) {
         throw UnusableInput("no voxel is above 0.5: the mask is empty");
     }
     return cropped(image, {low, high}, margin, std::identity());
 }
 
-/// How far around a mask its smoothing looks, and one voxel more.
-Index margin_of(const std::vector<float>& weights) { return static_cast<Index>(weights.size()) + 1; }
-
-std::vector<float> smoothing_weights(double width) { return gaussian_weights(width > 0.0 ? width : 1.0); }
+/// How far around a mask its smoothing looks, and one voxel more; without smoothing what the default needs.
+Index margin_of(double width) { return reach_of_smoothing(width > 0.0 ? width : MaskSmoothing().width) + 2; }
 
 using LabelCounts = std::map<float, LabelCount>;
 
@@ -295,30 +157,6 @@ void check_width(double smoothing_width) {
             "the width of the smoothing of masks must lie between 0 and 10 voxels");
 }
 
-/// A smoothed mask in place of a mask.
-void smooth(Image& image, const std::vector<float>& weights, const Execution& execution) {
-    std::vector<bool> is_inside(image.values.size());
-    CancellationPoint cancellation(kVoxelsAtOnce);
-    std::transform(image.values.begin(), image.values.end(), is_inside.begin(), [&](float value) {
-        cancellation();
-        return value > kIso;
-    });
-    const auto inside = static_cast<double>(std::count(is_inside.begin(), is_inside.end(), true));
-    report(execution, kMaskStage, 0.3);
-    blur(image, weights);
-    report(execution, kMaskStage, 0.6);
-    const float level = level_with_volume(image, inside);
-    const std::vector<bool> is_vanished = vanished_parts(image, level, is_inside);
-    for_each_index(image.values.size(), [&](std::size_t i) {
-        const float difference = image.values[i] - level;
-        image.values[i] = is_vanished[i] ? kIso - difference : kIso + difference;
-    });
-    if (std::ranges::find(is_vanished, true) != is_vanished.end()) {
-        const float shift = kIso - level_with_volume(image, inside);
-        for_each_index(image.values.size(), [&](std::size_t i) { image.values[i] += shift; });
-    }
-}
-
 /// See `smoothed_mask`. \param free_mask is called as soon as `mask` is not needed any more
 template <class Free>
 Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execution& execution, const Free& free_mask) {
@@ -326,11 +164,10 @@ Image smoothed(const ImageView& mask, const MaskSmoothing& options, const Execut
     return in_arena(execution, [&] {
         report(execution, kMaskStage, 0.0);
         check(mask, execution);
-        const std::vector<float> weights = smoothing_weights(options.width);
-        Image image = cropped_mask(canonical(mask), margin_of(weights));
+        Image image = cropped_mask(canonical(mask), margin_of(options.width));
         free_mask();
         if (options.width > 0.0) {
-            smooth(image, weights, execution);
+            smooth_mask(image, options.width, execution);
         }
         report(execution, kMaskStage, 1.0);
         return image;
@@ -347,8 +184,12 @@ void check(const ImageView& image, const Execution& execution) {
             static_cast<std::size_t>(image.sizes[2]),
             [&](std::size_t k, std::vector<std::size_t>& out) {
                 const std::span<const float> values = image.values.subspan(k * slice, slice);
-                const auto nan = std::ranges::find_if(values, [](float value) { return std::isnan(value); });
-                if (nan != values.end()) {
+                int count = 0;
+                for (const float value : values) {
+                    count += std::isnan(value) ? 1 : 0;
+                }
+                if (count > 0) {
+                    const auto nan = std::ranges::find_if(values, [](float value) { return std::isnan(value); });
                     out.push_back(k * slice + (nan - values.begin()));
                 }
             },
@@ -397,7 +238,7 @@ Image label_mask(const ImageView& image, const LabelCount& label, double smoothi
         box.low[axis] = view.is_turned[axis] ? last - label.high[from] : label.low[from];
         box.high[axis] = view.is_turned[axis] ? last - label.low[from] : label.high[from];
     }
-    return cropped(view, box, margin_of(smoothing_weights(smoothing_width)),
+    return cropped(view, box, margin_of(smoothing_width),
                    [&](float value) { return value == label.label ? 1.0F : 0.0F; });
 }
 

@@ -99,20 +99,31 @@ struct Field {
 std::vector<SurfaceCell> surface_cells(const Field& field) {
     const auto& [width, height, depth] = field.sizes;
     const std::size_t slice = static_cast<std::size_t>(width) * height;
+    const auto has_inside =
+        mapped<std::uint8_t>(static_cast<std::size_t>(height) * depth, [&, width = width](std::size_t row) {
+            const float* const values = field.values.data() + row * width;
+            int count = 0;
+            for (Index i = 0; i < width; ++i) {
+                count += values[i] < 0.0F ? 1 : 0;
+            }
+            return static_cast<std::uint8_t>(count > 0 ? 1 : 0);
+        });
     return collect<std::vector<SurfaceCell>>(
         depth - 1,
         [&, width = width, height = height](Index k, std::vector<SurfaceCell>& out) {
             std::vector<std::uint8_t> inside(width);  // bits of the four values beside each other
             for (Index j = 0; j + 1 < height; ++j) {
-                const float* row = field.values.data() + k * slice + static_cast<std::size_t>(j) * width;
-                int all = 0;
-                for (Index i = 0; i < width; ++i) {
-                    const int corners = (row[i] < 0.0F ? 1 : 0) | (row[i + width] < 0.0F ? 4 : 0) |
-                                        (row[i + slice] < 0.0F ? 16 : 0) | (row[i + slice + width] < 0.0F ? 64 : 0);
-                    inside[i] = static_cast<std::uint8_t>(corners);
-                    all |= corners;
+                const std::uint8_t* const rows = has_inside.data() + static_cast<std::size_t>(k) * height + j;
+                if ((rows[0] | rows[1] | rows[height] | rows[height + 1]) == 0) {
+                    continue;
                 }
-                for (Index i = 0; all != 0 && i + 1 < width; ++i) {
+                const float* row = field.values.data() + k * slice + static_cast<std::size_t>(j) * width;
+                for (Index i = 0; i < width; ++i) {
+                    inside[i] = static_cast<std::uint8_t>((row[i] < 0.0F ? 1 : 0) | (row[i + width] < 0.0F ? 4 : 0) |
+                                                          (row[i + slice] < 0.0F ? 16 : 0) |
+                                                          (row[i + slice + width] < 0.0F ? 64 : 0));
+                }
+                for (Index i = 0; i + 1 < width; ++i) {
                     if (const int corners = inside[i] | inside[i + 1] << 1; corners != 0 && corners != 255) {
                         out.push_back({{i, j, k}, static_cast<std::uint8_t>(corners)});
                     }
@@ -140,8 +151,10 @@ template <class Predicate>
 InsideVoxels solid_voxels(const ImageView& image, const CanonicalImage& canonical, const Level& level,
                           const Predicate& is_inside) {
     const InsideVoxels inside = inside_voxels(canonical, is_inside);
-    const auto [least, most] = std::ranges::minmax(image.values);
-    if (inside.count == 0 || (inside.count == static_cast<std::int64_t>(image.values.size()) && least < most)) {
+    if (inside.count != 0 && inside.count != std::ssize(image.values)) {
+        return inside;
+    }
+    if (const auto [least, most] = std::ranges::minmax(image.values); inside.count == 0 || least < most) {
         Words text;
         text << (inside.count == 0 ? "no voxel is " : "all voxels are ") << (level.is_below ? "below " : "above ")
              << level.iso << ": the values are " << least << " ... " << most;
@@ -178,13 +191,14 @@ Field field_of(const ImageView& view, const Level& level) {
             const std::size_t begin = field.values.size();
             field.values.resize(begin + static_cast<std::size_t>(field.sizes[0]));
             const std::span<float> values = std::span(field.values).subspan(begin);
-            const auto signed_value = [&](float value) {
+            const auto signed_value = [sign, iso](float value) {
                 constexpr float kMost = 1e30F;
                 return std::clamp(sign * (value - iso), -kMost, kMost);
             };
-            for (Index i = std::max<Index>(low[0], 0); i <= std::min<Index>(high[0], width - 1); ++i) {
-                values[i - low[0]] = signed_value(row[i]);
-            }
+            const Index first = std::max<Index>(low[0], 0);
+            const Index last = std::min<Index>(high[0], width - 1);
+            std::ranges::transform(row.subspan(first, last + 1 - first), values.begin() + (first - low[0]),
+                                   signed_value);
             if (low[0] < 0) {
                 values.front() = std::abs(signed_value(row[0]));
             }
