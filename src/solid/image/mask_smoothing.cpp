@@ -20,8 +20,8 @@ namespace scaleaxis::inline v1 {
 namespace {
 
 // Levels are means over so many times the width of the kernel. With half of it they follow the steps of the staircase
-// (50 labels of a test volume have 409 sheets at 1.4, 318 at 2, 293 at 3, and 312 with one level for all); with twice of
-// it thin parts have the level of the thick one beside them for four voxels.
+// (50 labels of a test volume have 409 sheets at 1.4, 318 at 2, 293 at 3, and 312 with one level for all); with twice
+// of it thin parts have the level of the thick one beside them for four voxels.
 constexpr double kWindow = 3.0;
 
 /// Weights of a Gaussian kernel at 0, 1, 2…; their sum with both signs is 1.
