@@ -86,10 +86,10 @@ def test_files(tmp_path, name):
         import SimpleITK as itk
 
         itk.WriteImage(itk.GetImageFromArray(values.T), str(file))
-    found = dict(scaleaxis.label_axes(file, 0.05))
+    found = dict(scaleaxis.label_axes(file, 0.03))
     assert list(found) == [3, 7, 500]
     assert found[7].name.endswith("-label7")
-    assert is_same(found[7], scaleaxis.axis(file, 0.05, labels=7))
+    assert is_same(found[7], scaleaxis.axis(file, 0.03, labels=7))
 
 
 def test_labels_without_an_axis_are_left_out():
@@ -284,5 +284,5 @@ def test_voids_are_filled():
     values[10:13, 10:13, 10:13] = 0
     assert scaleaxis.load(values, labels=3).solid.topology.voids == 1
     assert scaleaxis.load(values, labels=3, fill_voids=True).solid.topology.voids == 0
-    found = dict(scaleaxis.label_axes(values, 0.05, fill_voids=True))
+    found = dict(scaleaxis.label_axes(values, 0.03, fill_voids=True))
     assert found[3].topology.voids == 0
