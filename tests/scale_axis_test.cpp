@@ -300,7 +300,7 @@ TEST(ScaleAxis, NamesADeltaForTheTopologyOfTheSolid) {
         value = uniform(random, 0.0, 1.0) < 0.3 ? 1.0F : 0.0F;
     }
     const auto solid = image_solid(smoothed_mask(noise), {});
-    std::optional<Length> delta = Length::relative(0.3);
+    std::optional<Length> delta = Length::relative(0.2);
     int rounds = 0;
     while (delta && rounds < 5) {
         const ScaleAxis axis = scale_axis(*solid, {.delta = *delta, .scales = {1.0}});

@@ -24,17 +24,20 @@ struct CanonicalImage {
     std::array<int, 3> axes{};                ///< that of the image which each axis is
     std::array<bool, 3> is_turned{};          ///< whether it runs the other way
 
-    /// The values along the first axis. \param memory holds them where they do not lie beside each other
-    std::span<const float> row(Index j, Index k, std::vector<float>& memory) const {
-        const float* begin = first + j * strides[1] + k * strides[2];
+    /// `count` values along the first axis. \param memory holds them where they do not lie beside each other
+    std::span<const float> row(Index begin, Index count, Index j, Index k, std::vector<float>& memory) const {
+        const float* values = first + begin * strides[0] + j * strides[1] + k * strides[2];
         if (strides[0] == 1) {
-            return {begin, static_cast<std::size_t>(sizes[0])};
+            return {values, static_cast<std::size_t>(count)};
         }
-        memory.resize(sizes[0]);
-        for (Index i = 0; i < sizes[0]; ++i) {
-            memory[i] = begin[i * strides[0]];
+        memory.resize(count);
+        for (Index i = 0; i < count; ++i) {
+            memory[i] = values[i * strides[0]];
         }
         return memory;
+    }
+    std::span<const float> row(Index j, Index k, std::vector<float>& memory) const {
+        return row(0, sizes[0], j, k, memory);
     }
 };
 

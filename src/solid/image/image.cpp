@@ -29,7 +29,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-constexpr std::string_view kMaskStage = "mask";
 constexpr unsigned kVoxelsAtOnce = 1 << 20;  // between two questions whether to stop
 constexpr std::size_t kMostLabels = 65535;
 
@@ -62,7 +61,7 @@ Image cropped(const CanonicalImage& image, IndexBox box, Index margin, const Of&
     for (Index k = low[2]; k <= high[2]; ++k) {
         stop_if_cancelled();
         for (Index j = low[1]; j <= high[1]; ++j) {
-            to = std::ranges::transform(image.row(j, k, memory).subspan(low[0], part.sizes[0]), to, of).out;
+            to = std::ranges::transform(image.row(low[0], part.sizes[0], j, k, memory), to, of).out;
         }
     }
     return part;

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/powers.hpp"
 #include "base/vectors.hpp"
@@ -185,9 +186,13 @@ void add_levels(const std::array<Index, 3>& sizes, const std::vector<std::vector
     const auto around = [](Index at, Index far, Index size) {
         return std::array{std::max<Index>(0, at - far), std::min<Index>(size, at + far + 1)};
     };
+    const auto [first_beside, end_beside] = around(k, 1, depth);
+    if (std::all_of(slices.begin() + first_beside, slices.begin() + end_beside,
+                    [](const std::vector<BoundaryVoxel>& slice) { return slice.empty(); })) {
+        return;
+    }
     std::vector<std::array<Index, 2>> beside(height, {width, 0});  // of each row: from where to where there are any
     std::vector<std::uint8_t> is_beside(static_cast<std::size_t>(width) * height);
-    const auto [first_beside, end_beside] = around(k, 1, depth);
     for (Index other = first_beside; other < end_beside; ++other) {
         for (const BoundaryVoxel& one : slices[other]) {
             const auto [left, right] = around(one.at[0], 1, width);
@@ -274,25 +279,15 @@ void for_each_around(const std::array<Index, 3>& sizes, std::size_t voxel, const
 
 /// Into how many pieces voxels fall. \param voxels ascending
 int pieces_of(const std::array<Index, 3>& sizes, const std::vector<std::size_t>& voxels) {
-    std::vector<bool> is_seen(voxels.size());
-    std::vector<std::size_t> waiting;
-    int pieces = 0;
-    const auto see = [&](std::size_t voxel) {
-        const auto place = std::ranges::lower_bound(voxels, voxel);
-        const auto index = place - voxels.begin();
-        if (place != voxels.end() && *place == voxel && !is_seen[index]) {
-            is_seen[index] = true;
-            waiting.push_back(voxel);
-        }
-    };
+    DisjointSets sets(voxels.size());
+    auto pieces = static_cast<int>(voxels.size());
     for (std::size_t n = 0; n < voxels.size(); ++n) {
-        pieces += is_seen[n] ? 0 : 1;
-        see(voxels[n]);
-        while (!waiting.empty()) {
-            const std::size_t voxel = waiting.back();
-            waiting.pop_back();
-            for_each_around(sizes, voxel, see);
-        }
+        for_each_around(sizes, voxels[n], [&](std::size_t other) {
+            const auto place = std::ranges::lower_bound(voxels, other);
+            if (place != voxels.end() && *place == other) {
+                pieces -= sets.join(static_cast<Index>(n), static_cast<Index>(place - voxels.begin())) ? 1 : 0;
+            }
+        });
     }
     return pieces;
 }
@@ -343,18 +338,17 @@ void put_back_parts(Image& image, std::vector<std::uint8_t>& states, const std::
 Index reach_of_smoothing(double width) { return static_cast<Index>(gaussian_weights(width).size()) - 1; }
 
 void smooth_mask(Image& mask, double width, const Execution& execution) {
-    constexpr const char* kStage = "mask";
     Sides sides = sides_of(mask);
     const auto inside = std::accumulate(sides.in_row.begin(), sides.in_row.end(), std::int64_t{0});
-    report(execution, kStage, 0.3);
+    report(execution, kMaskStage, 0.3);
     blur(mask, gaussian_weights(width));
-    report(execution, kStage, 0.5);
+    report(execution, kMaskStage, 0.5);
     const std::vector<LevelOfVoxel> levels = local_levels(mask, sides, gaussian_weights(kWindow * width));
     for (const auto& [voxel, level] : levels) {
         mask.values[voxel] += kMaskLevel - level;
     }
     put_back_parts(mask, sides.is_inside, levels);
-    report(execution, kStage, 0.7);
+    report(execution, kMaskStage, 0.7);
     const float shift = kMaskLevel - level_with_volume(mask, static_cast<double>(inside));
     for_each_index(mask.values.size(), [&](std::size_t i) { mask.values[i] += shift; });
 }
