@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "axis/envelope_data.hpp"
+#include "base/vectors.hpp"
 #include "complexes.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/distance.hpp"
@@ -183,6 +184,88 @@ TEST(Envelope, BoundaryPointsLieOnItAndCoverIt) {
             }
             EXPECT_LE(least, kSpacing);
         }
+    }
+}
+
+/// Triangles, edges and vertices at random, some with balls that hold others, some of radius 0.
+MedialComplex random_complex(Random& random) {
+    std::vector<Point> vertices;
+    for (int i = 0; i < 14; ++i) {
+        vertices.push_back(random_point(random, 1.0));
+    }
+    MedialComplex complex = complex_by_hand(vertices, {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {4, 5, 6}}, {},
+                                            {{{6, 7}}, {{7, 8}}, {{7, 9}}, {{10, 11}}});
+    for (double& radius : complex.radii) {
+        radius = uniform(random, -0.1, 0.5);
+        radius = std::max(radius, 0.0);
+    }
+    complex.radii[11] = complex.radii[10] + 3.0;  // the one ball holds the other
+    complex.radii[11] = std::min(complex.radii[11], distance(vertices[10], vertices[11]) + complex.radii[10] + 0.01);
+    return linear(complex);
+}
+
+TEST(EnvelopeSolid, FindsTheFirstOrTheLastPlaceWhereASegmentLeaves) {
+    constexpr std::uint64_t kSeed = 75;
+    std::cout << "seed " << kSeed << '\n';
+    Random random(kSeed);
+    constexpr int kSteps = 2000;
+    int several = 0;
+    for (int round = 0; round < 60; ++round) {
+        const MedialComplex complex = round == 0 ? cross_of_plates() : random_complex(random);
+        const Envelope envelope(complex);
+        const auto solid = envelope_solid(envelope);
+        for (int i = 0; i < 60; ++i) {
+            const Point inside_end = random_point(random, 1.2);
+            const Point outside_end = random_point(random, 3.0);
+            const Point reference = random_point(random, 2.0);
+            const double before = envelope.data().signed_distance(inside_end);
+            EXPECT_EQ(solid->inside(inside_end), before <= 0.0);
+            const auto found = solid->crossing(inside_end, outside_end, reference);
+            if (before > 0.0 || envelope.data().signed_distance(outside_end) <= 0.0) {
+                EXPECT_FALSE(found);
+                continue;
+            }
+            const auto at = [&](double t) { return inside_end + t * (outside_end - inside_end); };
+            std::vector<double> exits;
+            double last = before;
+            for (int k = 1; k <= kSteps; ++k) {
+                const double next = envelope.data().signed_distance(at(1.0 * k / kSteps));
+                if (last <= 0.0 && next > 0.0) {
+                    exits.push_back((k - 0.5) / kSteps);
+                }
+                last = next;
+            }
+            several += exits.size() > 1 ? 1 : 0;
+            ASSERT_TRUE(found) << "round " << round << ", segment " << i;
+            EXPECT_NEAR(envelope.data().signed_distance(*found), 0.0, 1e-8);
+            const double farthest =
+                std::max(distance(at(exits.front()), reference), distance(at(exits.back()), reference));
+            const double step = distance(inside_end, outside_end) / kSteps;
+            EXPECT_NEAR(distance(*found, reference), farthest, step) << "round " << round << ", segment " << i;
+        }
+    }
+    EXPECT_GT(several, 30);
+}
+
+TEST(EnvelopeSolid, SeedsLieOnItAndCoverIt) {
+    const Envelope envelope(cross_of_plates());
+    const auto solid = envelope_solid(envelope);
+    const std::vector<Point> seeds = solid->seeds(0.1, 1, {});
+    for (const Point& seed : seeds) {
+        EXPECT_NEAR(envelope.data().signed_distance(seed), 0.0, 1e-8);
+    }
+    for (const SurfacePoint& p : envelope.data().boundary_points(0.02)) {
+        EXPECT_LE(std::ranges::min(each_of<double>(seeds, [&](const Point& q) { return distance(p.point, q); })), 0.1);
+    }
+    EXPECT_THROW(solid->seeds(1e-7, 1, {}), InvalidOption);
+}
+
+TEST(EnvelopeSolid, KnowsNearestPoints) {
+    const auto solid = envelope_solid(Envelope(capsule(2.0, 0.5)), 0.05);
+    for (const Point& p : {Point{1.0, 0.3, 0.0}, Point{1.2, 0.0, -0.9}, Point{-0.8, 0.1, 0.0}}) {
+        const auto nearest = solid->nearest(p);
+        ASSERT_TRUE(nearest);
+        EXPECT_NEAR(distance(p, *nearest), std::abs(distance_to_segment(p, {0, 0, 0}, {2, 0, 0}) - 0.5), 1e-6);
     }
 }
 

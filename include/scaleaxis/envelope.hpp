@@ -54,10 +54,10 @@ class SCALEAXIS_EXPORT Envelope {
     std::shared_ptr<const EnvelopeData> data_;
 };
 
-/// The envelope as a solid that can be sampled and that knows the nearest points of its boundary, as `function_solid`
-/// finds them.
-/// \param smallest_feature as `FunctionOptions::smallest_feature`
-/// \throws as `function_solid`
+/// The envelope as a solid: its sides and crossings are those of the balls, its nearest points those of
+/// `function_solid`, which is made when they are first asked for.
+/// \param smallest_feature for that: `FunctionOptions::smallest_feature`
+/// \throws InvalidOption if it is negative or not finite
 SCALEAXIS_EXPORT std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature = 0.0,
                                                        const Execution& execution = {});
 

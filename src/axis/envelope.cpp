@@ -21,7 +21,6 @@
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "scaleaxis/errors.hpp"
-#include "scaleaxis/function.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/mesh_parts.hpp"
 
@@ -52,6 +51,15 @@ std::vector<Slab> slabs_of(const MedialComplex& complex) {
     return slabs;
 }
 
+bool is_exposed(const EnvelopePart& part, const Point& direction, double within) {
+    for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
+        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRelativeRounding + within) {
+            return false;
+        }
+    }
+    return true;
+}
+
 EnvelopeData::EnvelopeData(const MedialComplex& complex)
     : tree_(build_slab_tree(slabs_of(complex))), topology_(topology_of(complex)) {
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
@@ -66,11 +74,11 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
     }
     build_edges(triangles, curve_edges(complex));
 
-    std::vector<Part> balls;
+    std::vector<EnvelopePart> balls;
     for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
         balls.push_back({slab_at(complex, std::array{v}), {}, {}});
     }
-    std::vector<Part> cones;
+    std::vector<EnvelopePart> cones;
     for (const auto& [a, b] : triangles.edges) {
         cones.push_back({slab_at(complex, std::array{a, b}), {}, {}});
         const Point direction = complex.vertices[b] - complex.vertices[a];
@@ -83,7 +91,7 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
             balls[b].growth.push_back(-growth);
         }
     }
-    std::vector<Part> slabs;
+    std::vector<EnvelopePart> slabs;
     for (std::size_t f = 0; f < triangles.faces.size(); ++f) {
         const auto corners = triangles.faces[f];
         slabs.push_back({slab_at(complex, std::array{corners[0], corners[1], corners[2]}), {}, {}});
@@ -91,28 +99,17 @@ EnvelopeData::EnvelopeData(const MedialComplex& complex)
         for (std::size_t k = 0; shape && k < 3; ++k) {
             const Point& a = complex.vertices[corners[k]];
             const Point inwards = unit(cross(shape->normal, complex.vertices[corners[(k + 1) % 3]] - a));
-            Part& cone = cones[triangles.face_edges[f][k]];
+            EnvelopePart& cone = cones[triangles.face_edges[f][k]];
             cone.ways_on.push_back(inwards);
             cone.growth.push_back(dot(shape->gradient, inwards));
         }
     }
-    for (std::vector<Part>* parts : {&balls, &cones, &slabs}) {
+    for (std::vector<EnvelopePart>* parts : {&balls, &cones, &slabs}) {
         std::ranges::move(*parts, std::back_inserter(parts_));
     }
 }
 
-// Whether along no simplex that goes on from here the ball that is nearest to the contact comes nearer. With `within`:
-// false only if that is so for no direction that differs from this one by no more.
-bool EnvelopeData::is_exposed(const Part& part, const Point& direction, double within) const {
-    for (std::size_t k = 0; k < part.ways_on.size(); ++k) {
-        if (dot(direction, part.ways_on[k]) + part.growth[k] > kRelativeRounding + within) {
-            return false;
-        }
-    }
-    return true;
-}
-
-void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+void EnvelopeData::add_ball_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const {
     const Point center = part.slab.corners[0].center;
     const double radius = part.slab.corners[0].radius;
     const double cell = std::numbers::sqrt2 * spacing;
@@ -143,7 +140,7 @@ void EnvelopeData::add_ball_points(const Part& part, double spacing, std::vector
     }
 }
 
-void EnvelopeData::add_cone_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+void EnvelopeData::add_cone_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const {
     const auto shape = shape_of(part.slab);
     if (!shape) {
         return;  // one end holds the other
@@ -171,7 +168,7 @@ void EnvelopeData::add_cone_points(const Part& part, double spacing, std::vector
     }
 }
 
-void EnvelopeData::add_slab_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const {
+void EnvelopeData::add_slab_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const {
     const auto shape = shape_of(part.slab);
     if (!shape) {
         return;  // the cones on its border are all there is
@@ -210,15 +207,10 @@ double EnvelopeData::depth() const { return kRelativeRounding * bounds_.diagonal
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
-double EnvelopeData::typical_radius() const {
-    return median(each_of<double>(
-        tree_.slabs, [&](const Slab& slab) { return std::ranges::max(slab.corners, {}, &Ball::radius).radius; }));
-}
-
 std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
     const double sharp = kFileRounding * bounds_.diagonal();  // smaller balls stand for sharp edges
     std::vector<std::array<Point, 2>> creases;
-    for (const Part& part : parts_) {
+    for (const EnvelopePart& part : parts_) {
         const auto& [a, b, unused] = part.slab.corners;
         const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp;
         // A sharp edge that other balls cover is none of the boundary.
@@ -244,7 +236,7 @@ std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) con
 
 double EnvelopeData::area_of_parts() const {
     double area = 0.0;
-    for (const Part& part : parts_) {
+    for (const EnvelopePart& part : parts_) {
         Box box;
         double radius = 0.0;
         for (int k = 0; k < part.slab.size; ++k) {
@@ -325,14 +317,6 @@ std::vector<std::uint8_t> Envelope::inside(std::span<const Point> points, const 
     return answers<std::uint8_t>(points, execution, [&](const Point& p) -> std::uint8_t {
         return slab_within(data_->tree(), p, 0.0) != nullptr ? 1 : 0;
     });
-}
-
-std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {
-    Box box = envelope.bounds();
-    const double margin = kNegligible * box.diagonal();  // beyond the envelope, which touches the box
-    box = {box.min - Point{margin, margin, margin}, box.max + Point{margin, margin, margin}};
-    return function_solid([envelope](const Point& p) { return envelope.data().signed_distance(p); },
-                          {.bounds = box, .smallest_feature = smallest_feature, .is_distance = true}, execution);
 }
 
 Image signed_distance_image(const Envelope& envelope, Index resolution, const Execution& execution) {

@@ -21,6 +21,18 @@ struct SurfacePoint {
     double area = 0.0;
 };
 
+/// A simplex of a medial mesh, and how others that have it on their border go on from it.
+struct EnvelopePart {
+    Slab slab;
+    std::vector<Point> ways_on;  ///< unit vectors along these
+    std::vector<double> growth;  ///< how much the radius grows along each
+};
+
+/// Whether along no simplex that goes on from here the ball that is nearest to the contact in a direction comes nearer:
+/// without that the contact is no point of the boundary. With `within`: false only if that is so for no direction that
+/// differs from this one by no more.
+bool is_exposed(const EnvelopePart& part, const Point& direction, double within = 0.0);
+
 /// The members run in the caller's arena.
 class EnvelopeData {
    public:
@@ -30,6 +42,8 @@ class EnvelopeData {
     const SlabTree& tree() const { return tree_; }
     const Box& bounds() const { return bounds_; }
     const Topology& topology() const { return topology_; }
+    /// Balls, cones and slabs: all, those on the border of others too.
+    std::span<const EnvelopePart> parts() const { return parts_; }
 
     /// The least |p - centre| - radius.
     double signed_distance(const Point& p) const { return nearest_slab(tree_, p).near.distance; }
@@ -38,11 +52,11 @@ class EnvelopeData {
     /// negative, in a point inside, if that place is inside too: then the boundary is farther away.
     double distance_to_contact(const Point& p) const;
 
+    /// A slab that has the point inside, by more than rounding; null: none.
+    const Slab* covering(const Point& p) const;
+
     /// Points of the boundary: every point of it is at most `spacing` from one of them.
     std::vector<SurfacePoint> boundary_points(double spacing) const;
-
-    /// The median over all balls, cones and slabs of the largest radius of each: half of how thick most parts are.
-    double typical_radius() const;
 
     /// The sharp edges of the boundary: those of the complex with balls of radius 0.
     /// \param least_length those that hang together are left out if they are shorter
@@ -52,26 +66,16 @@ class EnvelopeData {
     double area_of_parts() const;
 
    private:
-    // All simplices, those that others have as their border too: slabs and cones with the directions in which others
-    // go on from them.
-    struct Part {
-        Slab slab;
-        std::vector<Point> ways_on;  // unit vectors along the simplices that have this one on their border …
-        std::vector<double> growth;  // … and how much the radius grows along each
-    };
-
     // Points less deep than this count as points of the boundary.
     double depth() const;
-    const Slab* covering(const Point& p) const;  // one that has the point inside, or null
-    bool is_exposed(const Part& part, const Point& direction, double within = 0.0) const;
-    void add_ball_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;
-    void add_cone_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;
-    void add_slab_points(const Part& part, double spacing, std::vector<SurfacePoint>& points) const;
+    void add_ball_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const;
+    void add_cone_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const;
+    void add_slab_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const;
 
     SlabTree tree_;
     Box bounds_;
     Topology topology_;
-    std::vector<Part> parts_;
+    std::vector<EnvelopePart> parts_;
 };
 
 }  // namespace scaleaxis::inline v1

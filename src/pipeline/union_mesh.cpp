@@ -35,9 +35,6 @@ constexpr double kFirstWork = 0.9;
 // beside them.
 constexpr double kSpeck = 0.25;
 
-// In tolerances: the finest grid on which an envelope is looked for.
-constexpr double kFinestFeature = 0.25;
-
 /// Leaves out parts of the mesh that are far smaller than the tolerance, if there are more parts than the solid has.
 void drop_specks(BoundaryMesh& boundary, const Topology& solid, double tolerance) {
     TriangleMesh& mesh = boundary.mesh;
@@ -132,9 +129,7 @@ UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, c
 
 UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
     const auto mesh_at = [&](double tolerance, const Execution& part) {
-        // A coarse grid may have no point inside a thin plate.
-        const double feature = std::clamp(envelope.data().typical_radius(), kFinestFeature * tolerance, tolerance);
-        return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, feature, inner); }, "envelope",
+        return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, 0.0, inner); }, "envelope",
                        tolerance, envelope.data().creases(kShortCrease * tolerance), envelope.topology(), options,
                        part);
     };
