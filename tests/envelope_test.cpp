@@ -292,8 +292,8 @@ TEST(Envelope, OfTheAxisOfABoxIsTheBox) {
 TEST(Envelope, MeshOfTheAxisOfABoxIsTheBox) {
     const Point size{3.0, 2.0, 1.0};
     const Envelope envelope(exact_axis_of_box(size));
-    EXPECT_EQ(envelope.data().creases(24.0 - 1e-9).size(), 12);
-    EXPECT_TRUE(envelope.data().creases(24.0 + 1e-9).empty());
+    EXPECT_EQ(envelope.data().creases(24.0 - 1e-9, 0.0).size(), 12);
+    EXPECT_TRUE(envelope.data().creases(24.0 + 1e-9, 0.0).empty());
     for (const double delta : {0.02, 0.1}) {
         const UnionMesh mesh = envelope_mesh(envelope, {.delta = Length::relative(delta)});
         EXPECT_EQ(mesh.report.euler, 2);
@@ -308,9 +308,27 @@ TEST(Envelope, HasNoCreaseWhereAnotherBallCoversIt) {
         complex_by_hand({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}, {1, 1, 0}, {2, 1, 0}, {0, 0, 0.1}},
                         {{0, 1, 4, 3}, {1, 2, 5, 4}}, {});
     plate.radii = {0.0, 0.0, 0.0, 0.3, 0.3, 0.3, 0.2};
-    const auto creases = Envelope(linear(plate)).data().creases(0.0);
+    const auto creases = Envelope(linear(plate)).data().creases(0.0, 0.0);
     ASSERT_EQ(creases.size(), 1);  // the half whose ends are not covered
     EXPECT_TRUE(std::ranges::all_of(creases, [](const auto& c) { return c[0].x >= 1.0 && c[1].x >= 1.0; }));
+}
+
+TEST(Envelope, MeshOfAWedgeIsOneWhateverItsAngle) {
+    // Half a sheet, whose radii grow from an edge on; its back and its ends are round.
+    for (const double angle : {40.0, 50.0, 60.0, 80.0, 120.0}) {
+        SCOPED_TRACE(angle);
+        const double sine = std::sin(0.5 * angle * std::numbers::pi / 180.0);
+        const Envelope wedge(
+            with_linear_radii(complex_by_hand({{0, 0, 0}, {2, 0, 0}, {2, 0, 3}, {0, 0, 3}}, {{0, 1, 2, 3}}),
+                              [&](const Point& p) { return sine * p.x; }));
+        EXPECT_EQ(wedge.data().creases(3.0, angle - 1.0).size(), 1);
+        EXPECT_TRUE(wedge.data().creases(3.0, angle + 1.0).empty());
+        const UnionMesh mesh = envelope_mesh(wedge, {.delta = Length::absolute(0.06)});
+        EXPECT_EQ(mesh.tolerance, 0.06);
+        EXPECT_EQ(mesh.report.euler, 2);
+        EXPECT_EQ(mesh.report.self_intersections, 0);
+        EXPECT_TRUE(mesh.warnings.empty());
+    }
 }
 
 TEST(Envelope, MeshOfAPlateThinnerThanTheToleranceIsThere) {

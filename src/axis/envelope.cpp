@@ -207,12 +207,15 @@ double EnvelopeData::depth() const { return kRelativeRounding * bounds_.diagonal
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
-std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length) const {
+std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length, double least_angle) const {
+    // From the edge of a wedge radii grow along its middle by the sine of half its angle.
+    const double least_growth = on_circle(0.5 * least_angle / 360.0)[1];
     const double sharp = kFileRounding * bounds_.diagonal();  // smaller balls stand for sharp edges
     std::vector<std::array<Point, 2>> creases;
     for (const EnvelopePart& part : parts_) {
         const auto& [a, b, unused] = part.slab.corners;
-        const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp;
+        const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp && !part.growth.empty() &&
+                              std::ranges::max(part.growth) >= least_growth;
         // A sharp edge that other balls cover is none of the boundary.
         if (is_sharp && !covering(a.center) && !covering(midpoint(a.center, b.center)) && !covering(b.center)) {
             creases.push_back({a.center, b.center});

@@ -60,7 +60,8 @@ class EnvelopeData {
 
     /// The sharp edges of the boundary: those of the complex with balls of radius 0.
     /// \param least_length those that hang together are left out if they are shorter
-    std::vector<std::array<Point, 2>> creases(double least_length) const;
+    /// \param least_angle in degrees, inside: those that are more acute are left out
+    std::vector<std::array<Point, 2>> creases(double least_length, double least_angle) const;
 
     /// About as many as `boundary_points` finds, and looks at.
     double area_of_parts() const;
