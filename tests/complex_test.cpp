@@ -5,11 +5,14 @@
 
 #include <cmath>
 #include <functional>
+#include <iostream>
 #include <limits>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "axis/edit/clipped.hpp"
+#include "base/vectors.hpp"
 #include "complexes.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/centering.hpp"
@@ -245,6 +248,52 @@ TEST(Complex, ReportsProgressUpToTheEnd) {
     EXPECT_EQ(end_of([&] { filter(complex, {}, execution); }), 1.0);
     EXPECT_EQ(end_of([&] { thresholded(complex, LocalMeasure::kObjectAngle, 1.0, execution); }), 1.0);
     EXPECT_EQ(end_of([&] { densify(with_scale(complex, 3.0), {}, execution); }), 1.0);
+}
+
+TEST(Clipped, IsThePartWhereAFunctionIsNotNegative) {
+    constexpr std::uint64_t kSeed = 76;
+    std::cout << "seed " << kSeed << '\n';
+    Random random(kSeed);
+    for (int round = 0; round < 100; ++round) {
+        std::vector<Point> vertices;
+        for (int i = 0; i < 9; ++i) {
+            vertices.push_back(random_point(random, 1.0));
+        }
+        const auto radius = [](const Point& p) { return 2.0 + 0.3 * p.x - 0.2 * p.y; };
+        const MedialComplex complex = with_linear_radii(
+            complex_by_hand(vertices, {{0, 1, 2}, {1, 2, 3}, {1, 2, 4}}, {}, {{4, 5}, {5, 6}, {5, 7}}), radius);
+        const Point direction = random_point(random, 1.0);
+        const auto values = [&](double sign) {
+            return each_of<double>(vertices, [&](const Point& p) { return sign * (dot(direction, p) - 0.1); });
+        };
+        double area = 0.0, length = 0.0;
+        std::size_t isolated = 0;
+        for (const double sign : {1.0, -1.0}) {
+            const MedialComplex part = clipped(complex, values(sign));
+            check(part);
+            for (std::size_t v = 0; v < part.vertices.size(); ++v) {
+                EXPECT_GE(sign * (dot(direction, part.vertices[v]) - 0.1), -1e-12);
+                EXPECT_NEAR(part.radii[v], radius(part.vertices[v]), 1e-12);
+            }
+            for (Index f = 0; f < static_cast<Index>(part.faces.size()); ++f) {
+                area += face_area(part, f);
+            }
+            for (const auto& [a, b] : curve_edges(part)) {
+                length += distance(part.vertices[a], part.vertices[b]);
+            }
+            isolated += isolated_vertices(part).size();
+        }
+        double whole = 0.0, whole_length = 0.0;
+        for (Index f = 0; f < 3; ++f) {
+            whole += face_area(complex, f);
+        }
+        for (const auto& [a, b] : curve_edges(complex)) {
+            whole_length += distance(vertices[a], vertices[b]);
+        }
+        EXPECT_NEAR(area, whole, 1e-12);
+        EXPECT_NEAR(length, whole_length, 1e-12);
+        EXPECT_EQ(isolated, 1);
+    }
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <string_view>
@@ -16,7 +15,6 @@
 #include "axis/stages/stages.hpp"
 #include "balls/distance_image.hpp"
 #include "base/angles.hpp"
-#include "base/disjoint_sets.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
@@ -61,7 +59,7 @@ bool is_exposed(const EnvelopePart& part, const Point& direction, double within)
 }
 
 EnvelopeData::EnvelopeData(const MedialComplex& complex)
-    : tree_(build_slab_tree(slabs_of(complex))), topology_(topology_of(complex)) {
+    : complex_(complex), tree_(build_slab_tree(slabs_of(complex))), topology_(topology_of(complex)) {
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
         bounds_.extend(complex.vertices[v] - r);
@@ -207,33 +205,17 @@ double EnvelopeData::depth() const { return kRelativeRounding * bounds_.diagonal
 
 const Slab* EnvelopeData::covering(const Point& p) const { return slab_within(tree_, p, -depth()); }
 
-std::vector<std::array<Point, 2>> EnvelopeData::creases(double least_length, double least_angle) const {
-    // From the edge of a wedge radii grow along its middle by the sine of half its angle.
-    const double least_growth = on_circle(0.5 * least_angle / 360.0)[1];
+std::vector<EnvelopeCrease> EnvelopeData::creases() const {
     const double sharp = kFileRounding * bounds_.diagonal();  // smaller balls stand for sharp edges
-    std::vector<std::array<Point, 2>> creases;
+    std::vector<EnvelopeCrease> creases;
     for (const EnvelopePart& part : parts_) {
         const auto& [a, b, unused] = part.slab.corners;
-        const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp && !part.growth.empty() &&
-                              std::ranges::max(part.growth) >= least_growth;
+        const bool is_sharp = part.slab.size == 2 && a.radius <= sharp && b.radius <= sharp && !part.growth.empty();
         // A sharp edge that other balls cover is none of the boundary.
         if (is_sharp && !covering(a.center) && !covering(midpoint(a.center, b.center)) && !covering(b.center)) {
-            creases.push_back({a.center, b.center});
+            creases.push_back({{a.center, b.center}, std::ranges::max(part.growth)});
         }
     }
-    std::map<std::array<double, 3>, Index> numbers;  // of the ends
-    const auto number_of = [&](const Point& p) {
-        return numbers.try_emplace({p.x, p.y, p.z}, static_cast<Index>(numbers.size())).first->second;
-    };
-    DisjointSets sets(2 * creases.size());
-    for (const auto& [a, b] : creases) {
-        sets.join(number_of(a), number_of(b));
-    }
-    std::vector<double> lengths(2 * creases.size(), 0.0);  // of those that hang together
-    for (const auto& [a, b] : creases) {
-        lengths[sets.find(number_of(a))] += distance(a, b);
-    }
-    std::erase_if(creases, [&](const auto& crease) { return lengths[sets.find(number_of(crease[0]))] < least_length; });
     return creases;
 }
 

@@ -33,12 +33,19 @@ struct EnvelopePart {
 /// differs from this one by no more.
 bool is_exposed(const EnvelopePart& part, const Point& direction, double within = 0.0);
 
+/// A sharp edge of the boundary.
+struct EnvelopeCrease {
+    std::array<Point, 2> ends;
+    double sine = 0.0;  ///< of half the angle inside: by this radii grow with the distance from the edge
+};
+
 /// The members run in the caller's arena.
 class EnvelopeData {
    public:
     /// \param complex as `check` demands, with a vertex at least
     explicit EnvelopeData(const MedialComplex& complex);
 
+    const MedialComplex& complex() const { return complex_; }
     const SlabTree& tree() const { return tree_; }
     const Box& bounds() const { return bounds_; }
     const Topology& topology() const { return topology_; }
@@ -59,9 +66,7 @@ class EnvelopeData {
     std::vector<SurfacePoint> boundary_points(double spacing) const;
 
     /// The sharp edges of the boundary: those of the complex with balls of radius 0.
-    /// \param least_length those that hang together are left out if they are shorter
-    /// \param least_angle in degrees, inside: those that are more acute are left out
-    std::vector<std::array<Point, 2>> creases(double least_length, double least_angle) const;
+    std::vector<EnvelopeCrease> creases() const;
 
     /// About as many as `boundary_points` finds, and looks at.
     double area_of_parts() const;
@@ -73,6 +78,7 @@ class EnvelopeData {
     void add_cone_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const;
     void add_slab_points(const EnvelopePart& part, double spacing, std::vector<SurfacePoint>& points) const;
 
+    MedialComplex complex_;
     SlabTree tree_;
     Box bounds_;
     Topology topology_;

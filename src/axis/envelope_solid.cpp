@@ -29,10 +29,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// In spacings, how dense seeds are: six for each square of the spacing on slabs, half as many on cones and balls. With
-// half as many again there are as many samples in the end, and with fewer more that are asked for one by one.
-constexpr double kSeedSpacing = 0.4;
-
 // How often a quarter of a circle, and a quarter of a side of the cube of all directions, are halved to see which of
 // their directions are exposed. Patches are then as large as they are to within a twentieth of the radius; finer ones
 // are no faster, and coarse ones overlap across thin sheets.
@@ -271,16 +267,15 @@ class EnvelopeSolid final : public PointwiseSolid {
 
     std::vector<Point> seeds(double spacing, std::uint64_t, const Execution& execution) const override {
         return in_arena(execution, [&] {
-            const auto count_of = [](double area, double apart) { return area / (apart * apart); };
-            const double apart = kSeedSpacing * spacing;
-            if (count_of(data().area_of_parts(), apart) >= std::numeric_limits<Index>::max()) {
-                double area = 0.0;  // of what is not covered
+            const double area = spacing * spacing / kSeedsOfBalls;
+            if (data().area_of_parts() / area >= std::numeric_limits<Index>::max()) {
+                double visible = 0.0;
                 for (const SurfacePoint& point : data().boundary_points(bounds().diagonal())) {
-                    area += point.area;
+                    visible += point.area;
                 }
-                check_number_of_seeds(count_of(area, apart));
+                check_number_of_seeds(visible / area);
             }
-            return each_of<Point>(data().boundary_points(apart), &SurfacePoint::point);
+            return each_of<Point>(data().boundary_points(std::sqrt(area)), &SurfacePoint::point);
         });
     }
 

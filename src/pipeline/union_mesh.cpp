@@ -11,7 +11,10 @@
 #include <utility>
 #include <vector>
 
+#include "axis/complex.hpp"
+#include "axis/edit/clipped.hpp"
 #include "axis/envelope_data.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/parallel.hpp"
 #include "base/progress.hpp"
 #include "pipeline/run.hpp"
@@ -28,10 +31,17 @@ namespace {
 // the few that the sides have.
 constexpr double kShortCrease = 10.0;
 
-// In degrees: the sides of a more acute edge come so close to each other beside the balls around its samples that
-// facets join them, and samples that are to part the sides crowd the edge. At 55 no sample is lost, at 50 a few, at 45
-// seventy.
-constexpr double kAcuteCrease = 54.0;
+// The sine of half of 54°. The sides of a more acute edge come so close to each other beside the balls around its
+// samples that facets join them, and samples that are to part the sides crowd the edge. At 55° no sample is lost, at
+// 50° a few, at 45° seventy.
+constexpr double kAcute = 0.454;
+
+// In tolerances: radius of the balls with which tips of acute edges end. With half of it facets join the sides there,
+// and with more of it a tip of 10° becomes blunt by more than a tolerance.
+constexpr double kTip = 1.0 / 16.0;
+
+// In tolerances: no more of a tip than this is cut off.
+constexpr double kLongestTip = 1.0;
 
 // Share of the progress bar taken by the first mesh of an envelope. A second one is seldom needed.
 constexpr double kFirstWork = 0.9;
@@ -66,6 +76,52 @@ void drop_specks(BoundaryMesh& boundary, const Topology& solid, double tolerance
     std::vector<Point> places = mesh.vertices;
     weld(places);
     boundary.copied_vertices = static_cast<Index>(mesh.vertices.size() - places.size());
+}
+
+/// The envelope without the ends of tips, which the sampling could not resolve; the same where it has none, or where it
+/// would fall to pieces.
+Envelope blunted(const Envelope& envelope, double tolerance) {
+    std::vector<Slab> tips;  // what is closer to an acute edge than its balls are as large as the least
+    for (const EnvelopeCrease& crease : envelope.data().creases()) {
+        if (crease.sine < kAcute) {
+            const double length = tolerance * std::min(kTip / std::max(crease.sine, kTip), kLongestTip);
+            tips.emplace_back(std::array{Ball{crease.ends[0], length}, Ball{crease.ends[1], length}});
+        }
+    }
+    if (tips.empty()) {
+        return envelope;
+    }
+    const SlabTree tree = build_slab_tree(tips);
+    const MedialComplex& complex = envelope.data().complex();
+    const MedialComplex rest = clipped(complex, mapped<double>(complex.vertices.size(), [&](std::size_t v) {
+                                           return nearest_slab(tree, complex.vertices[v]).near.distance;
+                                       }));
+    return agree(topology_of(rest), topology_of(complex)) ? Envelope(rest) : envelope;
+}
+
+/// The sharp edges that the mesh is to have.
+std::vector<std::array<Point, 2>> followed_creases(const Envelope& envelope, double tolerance) {
+    std::vector<EnvelopeCrease> creases = envelope.data().creases();
+    std::erase_if(creases, [](const EnvelopeCrease& crease) { return crease.sine < kAcute; });
+    std::map<std::array<double, 3>, Index> numbers;  // of the ends
+    const auto number_of = [&](const Point& p) {
+        return numbers.try_emplace({p.x, p.y, p.z}, static_cast<Index>(numbers.size())).first->second;
+    };
+    DisjointSets sets(2 * creases.size());
+    for (const auto& [ends, sine] : creases) {
+        sets.join(number_of(ends[0]), number_of(ends[1]));
+    }
+    std::vector<double> lengths(2 * creases.size(), 0.0);  // of those that hang together
+    for (const auto& [ends, sine] : creases) {
+        lengths[sets.find(number_of(ends[0]))] += distance(ends[0], ends[1]);
+    }
+    std::vector<std::array<Point, 2>> followed;
+    for (const auto& [ends, sine] : creases) {
+        if (lengths[sets.find(number_of(ends[0]))] >= kShortCrease * tolerance) {
+            followed.push_back(ends);
+        }
+    }
+    return followed;
 }
 
 // Half the Euler characteristic of the boundary is that of the solid.
@@ -134,9 +190,9 @@ UnionMesh union_mesh(std::vector<Ball> balls, const UnionMeshOptions& options, c
 
 UnionMesh envelope_mesh(const Envelope& envelope, const UnionMeshOptions& options, const Execution& execution) {
     const auto mesh_at = [&](double tolerance, const Execution& part) {
-        return mesh_of([&](const Execution& inner) { return envelope_solid(envelope, 0.0, inner); }, "envelope",
-                       tolerance, envelope.data().creases(kShortCrease * tolerance, kAcuteCrease), envelope.topology(),
-                       options, part);
+        const Envelope blunt = in_arena(part, [&] { return blunted(envelope, tolerance); });
+        return mesh_of([&](const Execution& inner) { return envelope_solid(blunt, 0.0, inner); }, "envelope", tolerance,
+                       followed_creases(blunt, tolerance), envelope.topology(), options, part);
     };
     const double tolerance = options.delta.of(envelope.bounds().diagonal());
     UnionMesh mesh = mesh_at(tolerance, part_of(execution, 0.0, kFirstWork));

@@ -22,10 +22,6 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
-// Candidates for each square of the spacing. The vertices of the boundary come on top: where the balls are those of a
-// sampling as dense as the spacing, these are as many again.
-constexpr double kSeedsPerSquare = 6.0;
-
 /// Asks about the balls in general position.
 class UnionSolid final : public PointwiseSolid {
    public:
@@ -68,10 +64,11 @@ class UnionSolid final : public PointwiseSolid {
 
     std::vector<Point> seeds(double spacing, std::uint64_t seed, const Execution& execution) const override {
         return in_arena(execution, [&] {
-            const double area = spacing * spacing / kSeedsPerSquare;
+            const double area = spacing * spacing / kSeedsOfBalls;
             check_number_of_seeds(number_of_seeds(area, seed));
             std::vector<Point> points = visible_points(complex_, adjacency_, area, seed);
-            // Every part of the boundary has vertices, but for those of one or two spheres.
+            // Every part of the boundary has vertices, but for those of one or two spheres. Where the balls are those
+            // of a sampling as dense as the spacing, these are as many again.
             append(points, complex_.vertices.points);
             return points;
         });
