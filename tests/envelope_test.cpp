@@ -111,6 +111,15 @@ TEST(SlabTree, FindsWhatBruteForceFinds) {
             EXPECT_EQ(nearest.near.distance, least);
             EXPECT_EQ(nearest_ball(slabs[nearest.slab], p).distance, least);
             EXPECT_EQ(nearest_slab(tree, p, least).slab, kNone) << "nothing is nearer than the limit";
+            const FramedPoint framed(tree, p);
+            for (std::size_t k = 0; k < slabs.size(); ++k) {
+                const float bound = tree.blocks[k / SlabBlock::kSize].least_distances(framed.at)[k % SlabBlock::kSize];
+                const double exact = tree.scale * nearest_ball(tree.slabs[k], p).distance;
+                EXPECT_LE(bound - framed.slack, exact) << "slab " << k;
+                if (exact > 5.0 * tree.scale) {
+                    EXPECT_GE(bound, exact - 0.02 * tree.scale) << "slab " << k << ": close to it far away";
+                }
+            }
             for (const double reach : {0.0, 0.1}) {
                 EXPECT_TRUE(slab_within(tree, p, least + 1e-12, reach));
                 EXPECT_FALSE(slab_within(tree, p, least - 1e-9, reach));

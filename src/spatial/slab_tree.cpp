@@ -25,6 +25,43 @@ Float4 least_distances_from_boxes(const BoxTree::Node& node, const FramedPoint& 
     return Float4{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])} - p.slack;
 }
 
+void put(SlabBlock& block, int lane, const SlabTree& tree, const Slab& slab) {
+    const auto put_point = [&](std::array<Float4, 3>& lanes, const Point& p) {
+        lanes[0][lane] = static_cast<float>(p.x);
+        lanes[1][lane] = static_cast<float>(p.y);
+        lanes[2][lane] = static_cast<float>(p.z);
+    };
+    Point sum;
+    for (int k = 0; k < slab.size; ++k) {
+        sum = sum + tree.in_frame(slab.corners[k].center);
+    }
+    const Point middle = (1.0 / slab.size) * sum;
+    put_point(block.middles, middle);
+    for (int k = 0; k < 3; ++k) {
+        const Ball& corner = slab.corners[k < slab.size ? k : 0];
+        put_point(block.corners[k], tree.in_frame(corner.center) - middle);
+        block.radii[k][lane] = slab_tree_details::in_frame(tree, corner.radius);
+    }
+}
+
+/// Calls `visit(i)` for the slabs of a leaf that may have a ball with |p - centre| - radius ≤ `most()`, until it
+/// returns true. \param most in the frame, asked for each block
+template <class Most, class Visit>
+bool any_near_in_leaf(const SlabTree& tree, Index first, Index count, const FramedPoint& p, const Most& most,
+                      const Visit& visit) {
+    const Index end = first + count;
+    for (Index block = first / SlabBlock::kSize; block * SlabBlock::kSize < end; ++block) {
+        const Float4 least = tree.blocks[block].least_distances(p.at) - p.slack;
+        for (int k = 0; k < SlabBlock::kSize; ++k) {
+            const Index i = block * SlabBlock::kSize + k;
+            if (i >= first && i < end && least[k] <= most() && visit(i)) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
 // An order of points, so that of equal balls always the same one is found.
 bool comes_before(const Point& a, const Point& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); }
 
@@ -51,8 +88,12 @@ using slab_tree_details::least_distances;
 
 SlabTree build_slab_tree(std::span<const Slab> slabs) {
     const auto boxes = mapped<Box>(slabs.size(), [&](std::size_t i) { return box_around_simplex(slabs[i]); });
-    SlabTree tree{build_box_tree(boxes), {}, {}};
+    SlabTree tree{build_box_tree(boxes), {}, {}, {}};
     tree.slabs = each_of<Slab>(tree.order, [&](Index i) { return slabs[i]; });
+    tree.blocks.resize((slabs.size() + SlabBlock::kSize - 1) / SlabBlock::kSize);
+    for (std::size_t i = 0; i < slabs.size(); ++i) {
+        put(tree.blocks[i / SlabBlock::kSize], static_cast<int>(i % SlabBlock::kSize), tree, tree.slabs[i]);
+    }
     tree.radii.resize(tree.nodes.size());
     for (std::size_t n = tree.nodes.size(); n-- > 0;) {  // children before parents
         const BoxTree::Node& node = tree.nodes[n];
@@ -78,40 +119,40 @@ NearestSlab nearest_slab(const SlabTree& tree, const Point& p, double limit) {
     for_each_better_leaf(
         tree, [&](const BoxTree::Node& node) { return least_distances(tree, node, framed); }, best,
         [&](Index first, Index count) {
-            for (Index i = first; i < first + count; ++i) {
-                if (is_farther(tree.slabs[i], p, nearest.near.distance)) {
-                    continue;
-                }
-                const SlabBall near = nearest_ball(tree.slabs[i], p);
-                const bool is_first = nearest.slab != kNone && tree.order[i] < nearest.slab;
-                if (near.distance < nearest.near.distance || (near.distance == nearest.near.distance && is_first)) {
-                    nearest = {tree.order[i], near};
-                }
-            }
-            best = in_frame(tree, nearest.near.distance);
+            any_near_in_leaf(
+                tree, first, count, framed, [&] { return best; },
+                [&](Index i) {
+                    const SlabBall near = nearest_ball(tree.slabs[i], p);
+                    const bool is_first = nearest.slab != kNone && tree.order[i] < nearest.slab;
+                    if (near.distance < nearest.near.distance || (near.distance == nearest.near.distance && is_first)) {
+                        nearest = {tree.order[i], near};
+                        best = in_frame(tree, near.distance);
+                    }
+                    return false;
+                });
         });
     return nearest;
 }
 
 const Slab* slab_within(const SlabTree& tree, const Point& p, double limit, double reach) {
     const FramedPoint framed(tree, p);
+    const float most = in_frame(tree, limit);
     const Slab* found = nullptr;
     const auto is_any_near = [&](Index first, Index count) {
-        for (Index i = first; i < first + count && found == nullptr; ++i) {
-            if (!is_farther(tree.slabs[i], p, limit) && nearest_ball(tree.slabs[i], p).distance <= limit) {
-                found = &tree.slabs[i];
-            }
-        }
-        return found != nullptr;
+        return any_near_in_leaf(
+            tree, first, count, framed, [&] { return most; },
+            [&](Index i) {
+                found = nearest_ball(tree.slabs[i], p).distance <= limit ? &tree.slabs[i] : nullptr;
+                return found != nullptr;
+            });
     };
     if (reach > 0.0) {
-        const float most = in_frame(tree, reach) + framed.slack;
-        const auto hit = [&](const BoxTree::Node& node) { return squared_distances(node, framed) <= most * most; };
+        const float far = in_frame(tree, reach) + framed.slack;
+        const auto hit = [&](const BoxTree::Node& node) { return squared_distances(node, framed) <= far * far; };
         if (box_tree_details::any_leaf(tree, hit, is_any_near)) {
             return found;
         }
     }
-    const float most = in_frame(tree, limit);
     const auto hit = [&](const BoxTree::Node& node) { return least_distances(tree, node, framed) <= most; };
     box_tree_details::any_leaf(tree, hit, is_any_near);
     return found;

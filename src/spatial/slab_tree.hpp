@@ -3,6 +3,8 @@
 /// A bounding-volume hierarchy over slabs.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <span>
@@ -13,10 +15,35 @@
 
 namespace scaleaxis::inline v1 {
 
+/// Four slabs of a tree, in its frame and in single precision: how far a point is from them at least is cheap to say.
+struct alignas(64) SlabBlock {
+    static constexpr int kSize = BoxTree::kWidth;
+
+    std::array<Float4, 3> middles;                 ///< means of the corners, coordinate by coordinate
+    std::array<std::array<Float4, 3>, 3> corners;  ///< from there; of a slab with fewer of them one is repeated
+    std::array<Float4, 3> radii;                   ///< rounded up
+
+    /// At most |p - centre| - radius of every ball, up to rounding of `p`. As a function on the simplex that is convex,
+    /// and its tangent at the mean lies below it: close where the simplex is small beside the distance.
+    Float4 least_distances(const std::array<float, 3>& p) const {
+        constexpr float kTiny = 1e-30F;  // of a point in the middle the way is 0, whatever it is divided by
+        const Float4 x = middles[0] - p[0], y = middles[1] - p[1], z = middles[2] - p[2];
+        const Float4 square = x * x + y * y + z * z;
+        const Float4 far{std::sqrt(square[0]), std::sqrt(square[1]), std::sqrt(square[2]), std::sqrt(square[3])};
+        const Float4 inverse{1.0F / (far[0] + kTiny), 1.0F / (far[1] + kTiny), 1.0F / (far[2] + kTiny),
+                             1.0F / (far[3] + kTiny)};
+        const auto from_middle = [&](int k) {
+            return (x * corners[k][0] + y * corners[k][1] + z * corners[k][2]) * inverse - radii[k];
+        };
+        return far + lesser(from_middle(0), lesser(from_middle(1), from_middle(2)));
+    }
+};
+
 /// The boxes of the tree are around the simplices alone; no ball reaches farther beyond them than the radius given.
 struct SlabTree : BoxTree {
-    std::vector<Float4> radii;  ///< largest radius in each child of each node, in the frame
-    std::vector<Slab> slabs;    ///< in the order of the leaves
+    std::vector<Float4> radii;      ///< largest radius in each child of each node, in the frame
+    std::vector<Slab> slabs;        ///< in the order of the leaves
+    std::vector<SlabBlock> blocks;  ///< slab `i` is in block `i / 4`
 };
 
 namespace slab_tree_details {

@@ -29,6 +29,9 @@
 namespace scaleaxis::inline v1 {
 namespace {
 
+// In spacings: triangles larger than this, of a few thousand points, are divided before threads share them.
+constexpr double kLarge = 32.0;
+
 /// The distance of a point to a surface.
 using DistanceTo = std::function<double(const Point&)>;
 
@@ -151,7 +154,18 @@ Tally join(std::vector<Tally>& parts) {
     return all;
 }
 
-/// Divides a piece until no part of it is larger than `spacing`.
+/// Divides a piece until no part of it is larger than `size`.
+void add_parts(const Piece& piece, double size, std::vector<Piece>& parts) {
+    if (piece.radius > size) {
+        for (const Piece& half : halves(piece)) {
+            add_parts(half, size, parts);
+        }
+    } else {
+        parts.push_back(piece);
+    }
+}
+
+/// The same, and adds the distances of the parts.
 void add_piece(const Piece& piece, double spacing, double accuracy, const DistanceTo& distance, Tally& tally) {
     if (piece.radius > spacing) {
         for (const Piece& half : halves(piece)) {
@@ -192,21 +206,39 @@ OneSidedDistance one_sided(const TriangleMesh* target, const DistanceTo& distanc
         area += area_of({{mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}, {}, 0.0, 0.0});
     }
     check_number_of_samples(area, options.spacing);
+    const auto piece_at = [&](std::size_t t) {
+        const auto& [u, v, w] = mesh.triangles[t];
+        return piece_of({mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]});
+    };
+    const double large = kLarge * options.spacing;
+    std::vector<Piece> parts;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        if (const Piece piece = piece_at(t); piece.radius > large) {
+            add_parts(piece, large, parts);
+        }
+    }
+    const auto add = [&](const Piece& piece, Tally& out) {
+        add_piece(piece, options.spacing, options.accuracy, distance, out);
+    };
     Tally tally = collect<Tally>(
         mesh.triangles.size(),
         [&](std::size_t t, Tally& out) {
-            const auto& [u, v, w] = mesh.triangles[t];
-            add_piece(piece_of({mesh.vertices[u], mesh.vertices[v], mesh.vertices[w]}), options.spacing,
-                      options.accuracy, distance, out);
+            if (const Piece piece = piece_at(t); !(piece.radius > large)) {
+                add(piece, out);
+            }
         },
         std::size_t{256});
+    Tally of_large = collect<Tally>(
+        parts.size(), [&](std::size_t i, Tally& out) { add(parts[i], out); }, std::size_t{1});
+    tally.add(of_large);
+    append(tally.pieces, of_large.pieces);
     tally.forget_pieces(options.accuracy);
 
     // Divide what may be farther, as long as that is little.
     const std::int64_t budget = 2 * tally.samples + 100'000;
     while (!tally.pieces.empty() && tally.samples + 2 * static_cast<std::int64_t>(tally.pieces.size()) <= budget) {
         const std::vector<Piece> whole = std::exchange(tally.pieces, {});
-        Tally parts = collect<Tally>(
+        Tally divided = collect<Tally>(
             whole.size(),
             [&](std::size_t i, Tally& out) {
                 for (Piece half : halves(whole[i])) {
@@ -216,8 +248,8 @@ OneSidedDistance one_sided(const TriangleMesh* target, const DistanceTo& distanc
                 }
             },
             std::size_t{256});
-        tally.add(parts);
-        tally.pieces = std::move(parts.pieces);
+        tally.add(divided);
+        tally.pieces = std::move(divided.pieces);
         tally.forget_pieces(options.accuracy);
     }
     double most = tally.max + options.accuracy;
