@@ -424,6 +424,8 @@ Cloud box(std::size_t count, std::mt19937_64& random) {
     return cloud;
 }
 
+std::vector<double> no_noise(const Cloud& cloud) { return std::vector<double>(cloud.points.size(), 0.0); }
+
 TEST(OrientConsistently, AgreesWithCgal) {
     std::mt19937_64 random = seeded(43);
     for (const Cloud& cloud : {torus(3000, random), box(4000, random)}) {
@@ -436,10 +438,30 @@ TEST(OrientConsistently, AgreesWithCgal) {
         const std::vector<Point> expected = oriented_by_cgal(cloud.points, normals, kNeighbors);
         std::vector<Index> all(cloud.points.size());
         std::iota(all.begin(), all.end(), 0);
-        orient_consistently(cloud.points, all, kNeighbors, normals);
+        orient_consistently(cloud.points, all, no_noise(cloud), kNeighbors, normals);
         EXPECT_EQ(normals, expected);
         EXPECT_EQ(normals, cloud.normals);
     }
+}
+
+TEST(OrientConsistently, TurnsAroundFromOneSideOfAThinPartToTheOther) {
+    std::mt19937_64 random = seeded(53);
+    Cloud lens;  // twice as thick as its points are apart: most of these have neighbours on the other side
+    constexpr double kThickness = 0.04;
+    for (const Point& p : in_cube(8000, random)) {
+        const Point q = (1 / norm(p)) * p;
+        const Point normal{q.x, q.y, q.z / kThickness};
+        lens.points.push_back({q.x, q.y, kThickness * q.z});
+        lens.normals.push_back((1 / norm(normal)) * normal);
+    }
+    std::vector<Point> normals = lens.normals;
+    for (Point& normal : normals) {
+        normal = random() % 2 == 0 ? -1.0 * normal : normal;
+    }
+    std::vector<Index> all(lens.points.size());
+    std::iota(all.begin(), all.end(), 0);
+    orient_consistently(lens.points, all, no_noise(lens), 18, normals);
+    EXPECT_EQ(normals, lens.normals);
 }
 
 TEST(OrientConsistently, TurnsThePartAlone) {
@@ -453,7 +475,7 @@ TEST(OrientConsistently, TurnsThePartAlone) {
             part.push_back(i);
         }
     }
-    orient_consistently(cloud.points, part, 18, normals);
+    orient_consistently(cloud.points, part, no_noise(cloud), 18, normals);
     for (Index i = 0; i < 1000; ++i) {
         ASSERT_EQ(normals[i], i < 200 ? -1.0 * cloud.normals[i] : cloud.normals[i]) << i;
     }

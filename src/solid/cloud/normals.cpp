@@ -44,6 +44,9 @@ std::array<Point, 3> principal_axes(std::span<const Point> points) {
     return axes;
 }
 
+// In standard deviations: points that lie off the surface by less may lie there by noise.
+constexpr double kNoise = 3.0;
+
 /// Coefficients of a quadric over a plane: of 1, u, v, u², uv, v².
 constexpr int kTerms = 6;
 using Terms = Eigen::Vector<double, kTerms>;
@@ -141,8 +144,8 @@ IndexLists connected_parts(const PointTree& tree, std::span<const Point> points,
     });
 }
 
-void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
-                         std::vector<Point>& normals) {
+void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::span<const double> noise,
+                         std::size_t neighbors, std::vector<Point>& normals) {
     const auto size = static_cast<Index>(part.size());
     const auto places = each_of<Point>(part, [&](Index i) { return points[i]; });
     const PointTree tree = build_point_tree(places);
@@ -159,9 +162,18 @@ void orient_consistently(std::span<const Point> points, std::span<const Index> p
     }
     const IndexLists graph = grouped_both_ways(part.size(), edges);
 
-    // R. C. Prim's algorithm from the highest point, whose normal is to point upwards. The shortest edges are those
-    // between normals of most similar direction.
+    // R. C. Prim's algorithm from the highest point, whose normal is to point upwards. The shortest edges are those at
+    // which the normal is most nearly what the one before leads to.
     const auto normal = [&](Index i) -> Point& { return normals[part[i]]; };
+    // That of a circle through both points: from one side of a thin part to the other it turns around. What is noise
+    // leads nowhere.
+    const auto led_to = [&](Index from, Index to) {
+        const Point step = places[to] - places[from];
+        const double most = kNoise * noise[part[from]];
+        const Point way = step - std::clamp(dot(normal(from), step), -most, most) * normal(from);
+        const double square = squared_norm(way);
+        return square > 0.0 ? normal(from) - (2.0 * dot(normal(from), way) / square) * way : normal(from);
+    };
     using Edge = std::tuple<double, Index, Index>;  // length, from, to
     std::priority_queue<Edge, std::vector<Edge>, std::greater<>> queue;
     const Index top = static_cast<Index>(std::ranges::max_element(places, {}, &Point::z) - places.begin());
@@ -173,7 +185,7 @@ void orient_consistently(std::span<const Point> points, std::span<const Index> p
         }
         for (const Index j : graph[i]) {
             if (!is_oriented[j]) {
-                queue.emplace(1.0 - std::abs(dot(normal(i), normal(j))), i, j);
+                queue.emplace(1.0 - std::abs(dot(led_to(i, j), normal(j))), i, j);
             }
         }
     };
@@ -182,7 +194,7 @@ void orient_consistently(std::span<const Point> points, std::span<const Index> p
         const auto [length, from, to] = queue.top();
         queue.pop();
         if (!is_oriented[to]) {
-            add(to, dot(normal(from), normal(to)) < 0.0);
+            add(to, dot(led_to(from, to), normal(to)) < 0.0);
         }
     }
 }

@@ -37,10 +37,11 @@ double largest_gap(const PointTree& tree, const Point& p, const Point& normal, s
 IndexLists connected_parts(const PointTree& tree, std::span<const Point> points, std::size_t neighbors);
 
 /// Flips normals of a connected part so that those of neighbours point to the same side: they are followed along a
-/// minimum spanning tree of the graph of nearest neighbours, in which similar directions are near to each other (H.
-/// Hoppe and others, "Surface reconstruction from unorganized points", 1992).
-void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::size_t neighbors,
-                         std::vector<Point>& normals);
+/// minimum spanning tree of the graph of nearest neighbours (H. Hoppe and others, "Surface reconstruction from
+/// unorganized points", 1992), in which neighbours are near to each other if their normals are those of a circle.
+/// \param noise how far points around each one lie off their surface: a standard deviation
+void orient_consistently(std::span<const Point> points, std::span<const Index> part, std::span<const double> noise,
+                         std::size_t neighbors, std::vector<Point>& normals);
 
 /// Do all points lie in a plane, to within rounding?
 bool are_coplanar(std::span<const Point> points);

@@ -405,9 +405,11 @@ void analyse(PreparedCloud& result, std::vector<Point> given, const Execution& e
         std::ranges::transform(fits, std::back_inserter(chosen), &LocalFit::normal);
     }
     const IndexLists parts = connected_parts(tree, points, neighbors);
+    // That of all points: where the two sides of a thin part are mixed up, the points of one are no noise of the other.
+    const auto deviations = each_of<double>(result.spacings, [&](double spacing) { return report.noise * spacing; });
     for (std::size_t part = 0; part < parts.size(); ++part) {
         stop_if_cancelled();
-        orient_consistently(points, parts[part], neighbors, chosen);
+        orient_consistently(points, parts[part], deviations, neighbors, chosen);
     }
     report.parts = static_cast<Index>(parts.size());
     orient_outward(result, parts);
