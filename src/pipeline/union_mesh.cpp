@@ -40,9 +40,6 @@ constexpr double kAcute = 0.454;
 // and with more of it a tip of 10° becomes blunt by more than a tolerance.
 constexpr double kTip = 1.0 / 16.0;
 
-// In tolerances: no more of a tip than this is cut off.
-constexpr double kLongestTip = 1.0;
-
 // Share of the progress bar taken by the first mesh of an envelope. A second one is seldom needed.
 constexpr double kFirstWork = 0.9;
 
@@ -81,10 +78,10 @@ void drop_specks(BoundaryMesh& boundary, const Topology& solid, double tolerance
 /// The envelope without the ends of tips, which the sampling could not resolve; the same where it has none, or where it
 /// would fall to pieces.
 Envelope blunted(const Envelope& envelope, double tolerance) {
-    std::vector<Slab> tips;  // what is closer to an acute edge than its balls are as large as the least
+    std::vector<Slab> tips;  // around acute edges, as far as balls are too small, but no farther than the tolerance
     for (const EnvelopeCrease& crease : envelope.data().creases()) {
         if (crease.sine < kAcute) {
-            const double length = tolerance * std::min(kTip / std::max(crease.sine, kTip), kLongestTip);
+            const double length = tolerance * kTip / std::max(crease.sine, kTip);
             tips.emplace_back(std::array{Ball{crease.ends[0], length}, Ball{crease.ends[1], length}});
         }
     }
