@@ -310,6 +310,12 @@ TEST(Envelope, MeshOfTheAxisOfABoxIsTheBox) {
     }
 }
 
+TEST(Envelope, MeshFollowsSharpEdgesOfTenTolerances) {
+    const Envelope cube(exact_axis_of_box({1.0, 1.0, 1.0}));  // edges of 12 in all
+    EXPECT_NEAR(envelope_mesh(cube, {.delta = Length::absolute(1.19)}).report.volume, 1.0, 1e-9);
+    EXPECT_LT(envelope_mesh(cube, {.delta = Length::absolute(1.21)}).report.volume, 0.99);
+}
+
 TEST(Envelope, HasNoCreaseWhereAnotherBallCoversIt) {
     // The plate ends in an edge of radius 0, in part within a ball.
     MedialComplex plate =
