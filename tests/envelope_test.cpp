@@ -205,11 +205,9 @@ MedialComplex random_complex(Random& random) {
     MedialComplex complex = complex_by_hand(vertices, {{0, 1, 2}, {1, 2, 3}, {2, 3, 4}, {4, 5, 6}}, {},
                                             {{{6, 7}}, {{7, 8}}, {{7, 9}}, {{10, 11}}});
     for (double& radius : complex.radii) {
-        radius = uniform(random, -0.1, 0.5);
-        radius = std::max(radius, 0.0);
+        radius = std::max(uniform(random, -0.1, 0.5), 0.0);
     }
-    complex.radii[11] = complex.radii[10] + 3.0;  // the one ball holds the other
-    complex.radii[11] = std::min(complex.radii[11], distance(vertices[10], vertices[11]) + complex.radii[10] + 0.01);
+    complex.radii[11] = distance(vertices[10], vertices[11]) + complex.radii[10] + 0.01;  // one ball holds the other
     return linear(complex);
 }
 
@@ -267,6 +265,11 @@ TEST(EnvelopeSolid, SeedsLieOnItAndCoverIt) {
         EXPECT_LE(std::ranges::min(each_of<double>(seeds, [&](const Point& q) { return distance(p.point, q); })), 0.1);
     }
     EXPECT_THROW(solid->seeds(1e-7, 1, {}), InvalidOption);
+}
+
+TEST(EnvelopeSolid, OfBallsWithoutRadiusIsRefused) {
+    EXPECT_THROW(envelope_solid(Envelope(capsule(1.0, 0.0))), UnusableInput);
+    EXPECT_THROW(envelope_solid(Envelope(capsule(1.0, 0.1)), -1.0), InvalidOption);
 }
 
 TEST(EnvelopeSolid, KnowsNearestPoints) {

@@ -57,7 +57,7 @@ class SCALEAXIS_EXPORT Envelope {
 /// The envelope as a solid: its sides and crossings are those of the balls, its nearest points those of
 /// `function_solid`, which is made when they are first asked for.
 /// \param smallest_feature for that: `FunctionOptions::smallest_feature`
-/// \throws InvalidOption if it is negative or not finite
+/// \throws UnusableInput if all radii are 0, InvalidOption if the feature is negative or not finite
 SCALEAXIS_EXPORT std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature = 0.0,
                                                        const Execution& execution = {});
 

@@ -58,8 +58,9 @@ bool is_exposed(const EnvelopePart& part, const Point& direction, double within)
     return true;
 }
 
-EnvelopeData::EnvelopeData(const MedialComplex& complex)
-    : complex_(complex), tree_(build_slab_tree(slabs_of(complex))), topology_(topology_of(complex)) {
+EnvelopeData::EnvelopeData(MedialComplex given)
+    : complex_(std::move(given)), tree_(build_slab_tree(slabs_of(complex_))), topology_(topology_of(complex_)) {
+    const MedialComplex& complex = complex_;
     for (std::size_t v = 0; v < complex.vertices.size(); ++v) {
         const Point r{complex.radii[v], complex.radii[v], complex.radii[v]};
         bounds_.extend(complex.vertices[v] - r);

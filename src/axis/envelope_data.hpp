@@ -43,7 +43,7 @@ struct EnvelopeCrease {
 class EnvelopeData {
    public:
     /// \param complex as `check` demands, with a vertex at least
-    explicit EnvelopeData(const MedialComplex& complex);
+    explicit EnvelopeData(MedialComplex complex);
 
     const MedialComplex& complex() const { return complex_; }
     const SlabTree& tree() const { return tree_; }

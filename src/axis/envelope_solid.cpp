@@ -18,6 +18,7 @@
 #include "base/parallel.hpp"
 #include "base/vectors.hpp"
 #include "scaleaxis/envelope.hpp"
+#include "scaleaxis/errors.hpp"
 #include "scaleaxis/function.hpp"
 #include "scaleaxis/solid.hpp"
 #include "solid/pointwise_solid.hpp"
@@ -73,6 +74,12 @@ void add_exposed_cell(const EnvelopePart& part, const std::array<Point, 3>& axes
     }
 }
 
+void add_if_exposed(const Patch& patch, std::vector<Patch>& patches) {
+    if (!patch.box.is_empty()) {
+        patches.push_back(patch);
+    }
+}
+
 void add_patches_of_ball(const EnvelopePart& part, Index number, std::vector<Patch>& patches) {
     constexpr std::array<Point, 3> kAxes{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
     for (int side = 0; side < 6; ++side) {
@@ -81,7 +88,7 @@ void add_patches_of_ball(const EnvelopePart& part, Index number, std::vector<Pat
             for (const double y : {-0.5, 0.5}) {
                 Patch patch{.part = number, .side = 0, .box = {}};
                 add_exposed_cell(part, axes, x, y, 0.5, kCellHalvings, patch);
-                patches.push_back(patch);
+                add_if_exposed(patch, patches);
             }
         }
     }
@@ -113,7 +120,7 @@ void add_patches_of_cone(const EnvelopePart& part, Index number, std::vector<Pat
     for (const double turns : {0.125, 0.375, 0.625, 0.875}) {
         Patch patch{.part = number, .side = 0, .box = {}};
         add_exposed_arc(part, *shape, {first, second}, turns, 0.125, kArcHalvings, patch);
-        patches.push_back(patch);
+        add_if_exposed(patch, patches);
     }
 }
 
@@ -133,7 +140,6 @@ std::vector<Patch> patches_of(std::span<const EnvelopePart> parts) {
         parts.size(),
         [&](std::size_t i, std::vector<Patch>& out) {
             const auto number = static_cast<Index>(i);
-            const std::size_t begin = out.size();
             switch (parts[i].slab.size) {
                 case 1:
                     add_patches_of_ball(parts[i], number, out);
@@ -144,9 +150,6 @@ std::vector<Patch> patches_of(std::span<const EnvelopePart> parts) {
                 default:
                     add_patches_of_slab(parts[i], number, out);
             }
-            out.erase(std::remove_if(out.begin() + static_cast<std::ptrdiff_t>(begin), out.end(),
-                                     [](const Patch& patch) { return patch.box.is_empty(); }),
-                      out.end());
         },
         std::size_t{64});
 }
@@ -161,13 +164,6 @@ struct Segment {
     double foot_of(const Point& p) const { return dot(p - from, direction) / squared_norm(direction); }
 };
 
-/// Where a t² + 2 b t + c is 0, twice; not a number, or infinite, where it is not.
-std::array<double, 2> zeros(double a, double b, double c) {
-    const double root = std::sqrt(b * b - a * c);
-    const double sum = b > 0.0 ? -b - root : -b + root;
-    return {sum / a, c / sum};
-}
-
 /// Calls `visit(t, normal)` for the places where a line meets the boundary of the balls of a part, of all that its
 /// simplex would have if it went on beyond its border.
 template <class Visit>
@@ -175,7 +171,11 @@ void for_each_contact_with_ball(const EnvelopePart& part, const Segment& segment
     const auto& [center, radius] = part.slab.corners[0];
     const double middle = segment.foot_of(center);
     const Point q = segment.at(middle) - center;
-    for (const double way : zeros(squared_norm(segment.direction), 0.0, squared_norm(q) - radius * radius)) {
+    const auto ways = quadratic_zeros(squared_norm(segment.direction), 0.0, squared_norm(q) - radius * radius);
+    if (!ways) {
+        return;
+    }
+    for (const double way : *ways) {
         visit(middle + way, unit(segment.at(middle + way) - center));
     }
 }
@@ -194,9 +194,13 @@ void for_each_contact_with_cone(const EnvelopePart& part, const Segment& segment
     const double along = dot(q, axis), slope = dot(segment.direction, axis);
     const Point beside = q - along * axis, drift = segment.direction - slope * axis;
     const double radius = a.radius + growth * along;
-    for (const double way : zeros(square * squared_norm(drift) - growth * growth * slope * slope,
-                                  square * dot(beside, drift) - radius * growth * slope,
-                                  square * squared_norm(beside) - radius * radius)) {
+    const auto ways = quadratic_zeros(square * squared_norm(drift) - growth * growth * slope * slope,
+                                      square * dot(beside, drift) - radius * growth * slope,
+                                      square * squared_norm(beside) - radius * radius);
+    if (!ways) {
+        return;
+    }
+    for (const double way : *ways) {
         const double radius_there = radius + way * growth * slope;
         const double center = along + way * slope + radius_there * growth / square;
         if (radius_there > 0.0 && center >= -kRelativeRounding * length &&
@@ -346,6 +350,10 @@ class EnvelopeSolid final : public PointwiseSolid {
 std::unique_ptr<Solid> envelope_solid(const Envelope& envelope, double smallest_feature, const Execution& execution) {
     require(smallest_feature >= 0.0 && std::isfinite(smallest_feature),
             "the smallest feature of an envelope must be a positive length, or 0 for a share of its diagonal");
+    if (!(std::ranges::max(envelope.data().complex().radii) > kRelativeRounding * envelope.bounds().diagonal())) {
+        throw UnusableInput(
+            Diagnostic{"complex.empty", "all balls of the axis have radius 0: there is nothing that it could envelop"});
+    }
     return in_arena(execution, [&] {
         report(execution, "envelope", 0.0);
         std::unique_ptr<Solid> solid = std::make_unique<EnvelopeSolid>(envelope, smallest_feature);

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// Numbers by name, and the one in the middle.
+/// Numbers by name, the one in the middle, and zeros.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 namespace scaleaxis::inline v1 {
@@ -27,6 +30,17 @@ inline constexpr double kNegligible = 1e-3;
 
 /// Up to here all whole numbers are floats: labels beyond it are not told apart.
 inline constexpr float kMostExactFloat = 0x1p24F;
+
+/// Where a x² + 2 half_b x + c is 0, without cancellation; one of the places is infinite if a is 0. Nothing where there
+/// are not two.
+inline std::optional<std::array<double, 2>> quadratic_zeros(double a, double half_b, double c) {
+    const double discriminant = half_b * half_b - a * c;
+    if (!(discriminant > 0.0)) {
+        return std::nullopt;
+    }
+    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
+    return std::array{q / a, c / q};
+}
 
 /// The larger of two in the middle. \param values not empty
 inline double median(std::vector<double> values) {

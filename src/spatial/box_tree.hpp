@@ -44,6 +44,14 @@ struct BoxTree {
     Point in_frame(const Point& p) const { return scale * (p - origin); }
 };
 
+/// Writes a point into one lane of its coordinates.
+template <class Lane>
+void set_lane(std::array<Float4, 3>& coordinates, Lane lane, const Point& p) {
+    coordinates[0][lane] = static_cast<float>(p.x);
+    coordinates[1][lane] = static_cast<float>(p.y);
+    coordinates[2][lane] = static_cast<float>(p.z);
+}
+
 inline float largest_of(Float4 values) { return std::max({values[0], values[1], values[2], values[3]}); }
 inline float least_of(Float4 values) { return std::min({values[0], values[1], values[2], values[3]}); }
 

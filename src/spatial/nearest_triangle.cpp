@@ -104,9 +104,7 @@ std::vector<TriangleBlock> triangle_blocks(const Bvh& bvh, Counts counts) {
                 for (std::size_t s = 0; s < sides.size(); ++s) {
                     const auto& [normal, offset] = sides[s];
                     TriangleBlock& out = blocks[block];
-                    out.normals[s][0][k] = static_cast<float>(normal.x);
-                    out.normals[s][1][k] = static_cast<float>(normal.y);
-                    out.normals[s][2][k] = static_cast<float>(normal.z);
+                    set_lane(out.normals[s], k, normal);
                     out.offsets[s][k] = static_cast<float>(offset);
                 }
                 if (!counts.empty() && counts[block * kSize + k] == 0) {
@@ -215,9 +213,7 @@ std::vector<OrientedBoxes> oriented_boxes(const Bvh& bvh, Counts counts) {
                 const bool is_child = spans[n][k].begin < spans[n][k].end;
                 const OrientedBox box = is_child ? smaller_box(bvh, bvh.nodes[n], k, spans[n][k]) : OrientedBox{};
                 for (int axis = 0; axis < 3; ++axis) {
-                    out.axes[axis][0][k] = static_cast<float>(box.axes[axis].x);
-                    out.axes[axis][1][k] = static_cast<float>(box.axes[axis].y);
-                    out.axes[axis][2][k] = static_cast<float>(box.axes[axis].z);
+                    set_lane(out.axes[axis], k, box.axes[axis]);
                     out.middles[axis][k] = static_cast<float>(0.5 * (box.low[axis] + box.high[axis]));
                     out.halves[axis][k] =
                         is_child ? static_cast<float>(0.5 * (box.high[axis] - box.low[axis])) + Bvh::kPadding

@@ -26,20 +26,15 @@ Float4 least_distances_from_boxes(const BoxTree::Node& node, const FramedPoint& 
 }
 
 void put(SlabBlock& block, int lane, const SlabTree& tree, const Slab& slab) {
-    const auto put_point = [&](std::array<Float4, 3>& lanes, const Point& p) {
-        lanes[0][lane] = static_cast<float>(p.x);
-        lanes[1][lane] = static_cast<float>(p.y);
-        lanes[2][lane] = static_cast<float>(p.z);
-    };
     Point sum;
     for (int k = 0; k < slab.size; ++k) {
         sum = sum + tree.in_frame(slab.corners[k].center);
     }
     const Point middle = (1.0 / slab.size) * sum;
-    put_point(block.middles, middle);
+    set_lane(block.middles, lane, middle);
     for (int k = 0; k < 3; ++k) {
         const Ball& corner = slab.corners[k < slab.size ? k : 0];
-        put_point(block.corners[k], tree.in_frame(corner.center) - middle);
+        set_lane(block.corners[k], lane, tree.in_frame(corner.center) - middle);
         block.radii[k][lane] = slab_tree_details::in_frame(tree, corner.radius);
     }
 }

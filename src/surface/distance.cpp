@@ -154,31 +154,15 @@ Tally join(std::vector<Tally>& parts) {
     return all;
 }
 
-/// Divides a piece until no part of it is larger than `size`.
-void add_parts(const Piece& piece, double size, std::vector<Piece>& parts) {
-    if (piece.radius > size) {
-        for (const Piece& half : halves(piece)) {
-            add_parts(half, size, parts);
-        }
-    } else {
-        parts.push_back(piece);
-    }
-}
-
-/// The same, and adds the distances of the parts.
-void add_piece(const Piece& piece, double spacing, double accuracy, const DistanceTo& distance, Tally& tally) {
-    if (piece.radius > spacing) {
-        for (const Piece& half : halves(piece)) {
-            add_piece(half, spacing, accuracy, distance, tally);
-        }
+/// Divides a piece until no part of it is larger than `size`, and calls `visit` for each.
+template <class Visit>
+void for_each_part(const Piece& piece, double size, const Visit& visit) {
+    if (!(piece.radius > size)) {
+        visit(piece);
         return;
     }
-    stop_if_cancelled();
-    Piece known = piece;
-    known.distance = distance(piece.point);
-    tally.add(known.point, known.distance, area_of(piece));
-    if (known.most() > tally.max + accuracy) {
-        tally.pieces.push_back(known);
+    for (const Piece& half : halves(piece)) {
+        for_each_part(half, size, visit);
     }
 }
 
@@ -214,11 +198,18 @@ OneSidedDistance one_sided(const TriangleMesh* target, const DistanceTo& distanc
     std::vector<Piece> parts;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         if (const Piece piece = piece_at(t); piece.radius > large) {
-            add_parts(piece, large, parts);
+            for_each_part(piece, large, [&](const Piece& part) { parts.push_back(part); });
         }
     }
     const auto add = [&](const Piece& piece, Tally& out) {
-        add_piece(piece, options.spacing, options.accuracy, distance, out);
+        for_each_part(piece, options.spacing, [&](Piece part) {
+            stop_if_cancelled();
+            part.distance = distance(part.point);
+            out.add(part.point, part.distance, area_of(part));
+            if (part.most() > out.max + options.accuracy) {
+                out.pieces.push_back(part);
+            }
+        });
     };
     Tally tally = collect<Tally>(
         mesh.triangles.size(),

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "base/disjoint_sets.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "solid/image/interpolant_euler.hpp"
 #include "solid/zero_set/trilinear.hpp"
@@ -110,13 +111,12 @@ std::vector<Saddle> saddles_in(const CubeValues& corners) {
     const double a = f.xyz * common;
     const double half_b = f.xy * common;
     const double c = f.z * f.xy * f.xy - f.xz * f.y * f.xy - f.yz * f.x * f.xy + f.xyz * f.x * f.y;
-    const double discriminant = half_b * half_b - a * c;
-    if (!(discriminant > 0.0)) {
+    const auto zeros = quadratic_zeros(a, half_b, c);
+    if (!zeros) {
         return {};
     }
-    const double q = -(half_b + std::copysign(std::sqrt(discriminant), half_b));
     std::vector<Saddle> result;
-    for (const double z : {q / a, c / q}) {
+    for (const double z : *zeros) {
         const double by_xy = f.xy + f.xyz * z;
         const Point p{-(f.y + f.yz * z) / by_xy, -(f.x + f.xz * z) / by_xy, z};
         const auto is_within = [](double t) { return t > 0.0 && t < 1.0; };
