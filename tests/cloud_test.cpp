@@ -555,6 +555,41 @@ TEST(MovingLeastSquares, HasNothingInsideFarBeyondAnEdge) {
     }
 }
 
+// Towards the edge of a wedge its sides are nearer to each other than their points are: spheres fitted to points of
+// both tell nothing there, and neither does the plane of the nearest point.
+TEST(MovingLeastSquares, StaysNearItsPointsWhereSidesAreCloserThanThese) {
+    const double slope = std::tan(10.0 / 180.0 * std::numbers::pi);
+    const Point up = (1.0 / std::hypot(slope, 1.0)) * Point{-slope, 0, 1};
+    const Point down{up.x, 0, -up.z};
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        PointCloud cloud;
+        for (std::uint64_t i = 0; i < 2000; ++i) {
+            const double u = random_unit(seed, i, 0), v = random_unit(seed, i, 1),
+                         w = 2.0 * random_unit(seed, i, 2) - 1.0;
+            // Of the two sides, the back and the two ends, by their areas.
+            const double part = random_unit(seed, i, 3) * (4.0 / up.z + 12.0 * slope);
+            const bool is_side = part < 4.0 / up.z;
+            const bool is_back = !is_side && part < 4.0 / up.z + 4.0 * slope;
+            const double x = is_side ? 2.0 * u : is_back ? 2.0 : 2.0 * std::sqrt(u);
+            const double end = w < 0.0 ? 0.0 : 1.0;
+            const double across = is_side ? (w < 0.0 ? -1.0 : 1.0) : is_back ? w : 2.0 * v - 1.0;
+            cloud.points.push_back({x, is_side || is_back ? v : end, across * slope * x});
+            cloud.normals.push_back(is_side   ? (w < 0.0 ? down : up)
+                                    : is_back ? Point{1, 0, 0}
+                                              : Point{0, 2.0 * end - 1.0, 0});
+        }
+        const PreparedCloud prepared = prepare(cloud);
+        const auto solid = cloud_solid(prepared);
+        const SampledUnion made = sampled_union(*solid, {.tolerance = 0.005 * solid->bounds().diagonal()});
+        for (const Ball& ball : made.balls.balls) {
+            const Point& c = ball.center;
+            const double beyond = std::max({dot(up, c), dot(down, c), c.x - 2.0, -c.x, -c.y, c.y - 1.0});
+            ASSERT_LT(beyond + ball.radius, 2.5 * prepared.report.spacing) << c.x << ' ' << c.y << ' ' << c.z;
+        }
+    }
+}
+
 TEST(Points, AreThinnedWhereTheyAreDense) {
     const ImplicitSolid torus = torus_solid(1.0, 0.4);
     PointCloud cloud;

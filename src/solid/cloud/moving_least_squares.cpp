@@ -11,11 +11,13 @@
 
 #include "base/angles.hpp"
 #include "base/faults.hpp"
+#include "base/numbers.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "scaleaxis/cloud.hpp"
 #include "scaleaxis/errors.hpp"
 #include "scaleaxis/ranges.hpp"
+#include "solid/dipole_tree.hpp"
 #include "solid/pointwise_solid.hpp"
 #include "solid/seeds.hpp"
 #include "solid/zero_set/bracketed_root.hpp"
@@ -36,20 +38,17 @@ constexpr double kCloudSeedsPerSquare = 9.0;
 // The first thinning of seeds, before they are projected, in spacings.
 constexpr double kFirstThinning = 1.03;
 
-// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the radius, planes
-// alone.
-constexpr double kNear = 0.5;
+// Nearer than this part of the kernel's radius to a point, the spheres alone count; farther than the next one, the
+// winding number alone. These are 0.75 and 1.5 spacings at the default support. Spheres farther away bulge at edges and
+// join the sides of narrow gaps; nearer, the winding number shows single points and takes more of edges off.
+constexpr double kNear = 0.25;
+constexpr double kFar = 0.5;
 
-// The same for the height above this plane: what is so high is no part of the surface, whatever its exact distance.
-constexpr double kLow = 0.3;
-constexpr double kHigh = 0.4;
+// Points whose winding number is looked at to find that of the surface.
+constexpr std::size_t kLevelTrials = 2000;
 
 // Of places farther away than the support, a point that is so much farther than the nearest one serves as well.
 constexpr double kHardlyFarther = 1.03;
-
-// A place is as high above the plane at such a point as it is far, but for the 3 % and for noise. Where it is lower
-// than this part of that, the point lies around an edge, and its plane tells nothing.
-constexpr double kUpright = 0.9;
 
 // Segments are searched for crossings in steps of this part of the kernel's radius.
 constexpr double kProjectionStep = 0.25;
@@ -143,6 +142,11 @@ class MovingLeastSquares final : public PointwiseSolid {
             radii_[i] = kernel * spacings_[i];
             largest_radius_ = std::max(largest_radius_, radii_[i]);
         }
+        dipoles_ = DipoleTree(tree_, [&](Index i) {
+            const double area = spacings_[i] * spacings_[i];
+            return SurfacePart{area, area * tree_.points[i], area * normals_[i], {tree_.points[i], tree_.points[i]}};
+        });
+        level_ = level_of_surface();
         for_each_index(
             planes_.size(), [&](std::size_t i) { planes_[i] = plane_at(i); }, std::size_t{64});
     }
@@ -303,7 +307,7 @@ class MovingLeastSquares final : public PointwiseSolid {
     /// The plane that touches the surface near point `i`.
     Plane plane_at(std::size_t i) const {
         const Point& p = tree_.points[i];
-        const Sphere sphere = sphere_at(p, {static_cast<Index>(i), 0.0}, radii_[i]);
+        const Sphere sphere = sphere_at(p, radii_[i]);
         const Point normal = (1.0 / norm(sphere.gradient)) * sphere.gradient;
         return {normal, dot(normal, p) - sphere.height};
     }
@@ -328,48 +332,43 @@ class MovingLeastSquares final : public PointwiseSolid {
         const NearPoint nearest = near_point(tree_, p, largest_radius_, kHardlyFarther);
         const double nearest_distance = std::sqrt(nearest.squared_distance);
         const double radius = radii_[nearest.position];
-        const Plane& plane = planes_[nearest.position];
         const double at_least = nearest_distance > radius ? nearest_distance / kHardlyFarther : nearest_distance;
-        Value result{dot(plane.normal, p) - plane.offset, at_least - kNear * radius, radius, plane.normal};
-        if (nearest_distance > kNear * radius && std::abs(result.height) < kUpright * nearest_distance) {
-            const Sphere mean = mean_plane_at(p, radius);
-            result.height = mean.height;
-            result.gradient = mean.gradient;
-        }
-        const double share = std::min({1.0, (radius - nearest_distance) / (radius - kNear * radius),
-                                       (kHigh * radius - std::abs(result.height)) / (kHigh * radius - kLow * radius)});
+        Value result{0.0, at_least - kFar * radius, radius, {}};
+        const double share = std::clamp((kFar * radius - nearest_distance) / ((kFar - kNear) * radius), 0.0, 1.0);
         if (share > 0.0) {
-            const Sphere sphere = sphere_at(p, nearest, radius);
-            result.height = share * sphere.height + (1.0 - share) * result.height;
-            result.gradient = share * sphere.gradient + (1.0 - share) * result.gradient;
+            const Sphere sphere = sphere_at(p, radius);
+            result.height = share * sphere.height;
+            result.gradient = share * sphere.gradient;
+        }
+        if (share < 1.0) {
+            const double side = std::clamp(2.0 * (level_ - winding_number(p)), -1.0, 1.0);
+            const Point away = (1.0 / nearest_distance) * (p - tree_.points[nearest.position]);
+            result.height += (1.0 - share) * side * nearest_distance;
+            result.gradient = result.gradient + ((1.0 - share) * side) * away;
         }
         return result;
     }
 
-    /// Points around a place, and how near they are: of far ones counts how much farther they are than the nearest one.
-    template <class Visit>
-    void for_each_neighbor(const Point& p, const NearPoint& nearest, double radius, const Visit& visit) const {
-        const double shift = std::max(0.0, nearest.squared_distance - kNear * kNear * radius * radius);
-        for_each_point_near(tree_, p, std::sqrt(radius * radius + shift),
-                            [&](Index k, double squared) { visit(k, nearness(squared - shift, radius * radius)); });
+    /// That of the squares which the points have for themselves.
+    double winding_number(const Point& p) const {
+        return dipoles_.winding_number(tree_, p, [&](Index i) {
+            const Point d = tree_.points[i] - p;
+            const double square = squared_norm(d);
+            return square > 0.0 ? spacings_[i] * spacings_[i] * dot(normals_[i], d) / (square * std::sqrt(square))
+                                : 0.0;
+        });
     }
 
-    /// The mean of the planes through the points nearest to `p`, across their normals. Beyond an edge it has the
-    /// sides in between: a place may lie behind the plane of one of them, and yet outside.
-    Sphere mean_plane_at(const Point& p, double radius) const {
-        Sphere mean;
-        double sum = 0.0;
-        // Weights fall slowly: points of one side may be missing nearby, and those farther away count, too.
-        for_each_neighbor(p, nearest_point(tree_, p), radius, [&](Index k, double w) {
-            sum += w;
-            mean.height += w * dot(normals_[k], p - tree_.points[k]);
-            mean.gradient = mean.gradient + w * normals_[k];
-        });
-        return {mean.height / sum, (1.0 / sum) * mean.gradient};
+    /// The winding number on the surface: 0.5 where it is closed, 0 on a plane that ends, whose sides have 0.5 and
+    /// -0.5.
+    double level_of_surface() const {
+        const std::size_t step = tree_.points.size() / kLevelTrials + 1;
+        return median(mapped<double>((tree_.points.size() + step - 1) / step,
+                                     [&](std::size_t i) { return winding_number(tree_.points[i * step]); }));
     }
 
     /// That of `p` from the sphere fitted to the points around it.
-    Sphere sphere_at(const Point& p, const NearPoint& nearest, double radius) const {
+    Sphere sphere_at(const Point& p, double radius) const {
         struct Neighbor {
             Index position;
             double weight;
@@ -377,7 +376,8 @@ class MovingLeastSquares final : public PointwiseSolid {
         static thread_local std::vector<Neighbor> neighbors;
         neighbors.clear();
         Point mean;
-        for_each_neighbor(p, nearest, radius, [&](Index k, double x) {
+        for_each_point_near(tree_, p, radius, [&](Index k, double squared) {
+            const double x = nearness(squared, radius * radius);
             const double w = x * x * x * x;
             neighbors.push_back({k, w});
             mean = mean + w * normals_[k];
@@ -417,7 +417,7 @@ class MovingLeastSquares final : public PointwiseSolid {
 
     /// How far to go along a segment: the surface is not expected nearer than about this.
     static double step_from(const Value& v) {
-        return std::max({v.reach, kProjectionStep * v.radius, 0.8 * std::min(std::abs(v.height), kNear * v.radius)});
+        return std::max({v.reach, kProjectionStep * v.radius, 0.8 * std::min(std::abs(v.height), kFar * v.radius)});
     }
 
     /// Where the sign changes between two places of a segment.
@@ -457,7 +457,7 @@ class MovingLeastSquares final : public PointwiseSolid {
             const Value here = value(q);
             const double slope = norm(here.gradient);
             q = q - (here.height / (slope * slope)) * here.gradient;
-            if (!(slope > 0.0) || !(squared_distance(p, q) < kNear * kNear * here.radius * here.radius)) {
+            if (!(slope > 0.0) || !(squared_distance(p, q) < kFar * kFar * here.radius * here.radius)) {
                 break;
             }
             // The next step, which has the square of this error, would not matter.
@@ -477,7 +477,7 @@ class MovingLeastSquares final : public PointwiseSolid {
         const auto at = [&](double t) { return p + (sign * t) * planes_[nearest.position].normal; };
         double before = 0.0;
         Value value_before = start;
-        for (double t = std::max(1.5 * std::abs(start.height), 1e-3 * radius); t < kNear * radius; t *= 2.0) {
+        for (double t = std::max(1.5 * std::abs(start.height), 1e-3 * radius); t < kFar * radius; t *= 2.0) {
             const Value after = value(at(t));
             if ((after.height < 0.0) != (start.height < 0.0)) {
                 return at(root_between(at, before, value_before, t, after));
@@ -523,6 +523,8 @@ class MovingLeastSquares final : public PointwiseSolid {
     std::vector<double> radii_;  // of the kernels
     double largest_radius_ = 0.0;
     std::vector<Plane> planes_;
+    DipoleTree dipoles_;
+    double level_ = 0.0;  // the winding number on the surface
 
     std::vector<Diagnostic> warnings_;
 };
