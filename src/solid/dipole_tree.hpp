@@ -29,6 +29,13 @@ struct SurfacePart {
     }
 };
 
+/// The solid angle of a small piece of a surface, seen from a place far away. \param normal as long as its area
+/// \param d from that place to the piece; not 0
+inline double dipole_angle(const Point& normal, const Point& d) {
+    const double square = squared_norm(d);
+    return dot(normal, d) / (square * std::sqrt(square));
+}
+
 /// The part of the full sphere that the pieces of a surface hide, seen from a point: 1 inside and 0 outside a closed
 /// surface, in between around an open one (A. Jacobson, L. Kavan, O. Sorkine-Hornung, "Robust inside-outside
 /// segmentation using generalized winding numbers", 2013). Those far away count together, as one dipole (G. Barill, N.
@@ -93,9 +100,8 @@ class DipoleTree {
                 continue;
             }
             const Point d = dipole.center - p;
-            const double square = squared_norm(d);
-            if (square > dipole.reach) {
-                angle += dot(dipole.normal, d) / (square * std::sqrt(square));
+            if (squared_norm(d) > dipole.reach) {
+                angle += dipole_angle(dipole.normal, d);
             } else if (node.count[k] > 0) {
                 for (Index i = node.first[k]; i < node.first[k] + node.count[k]; ++i) {
                     angle += angle_of(i);

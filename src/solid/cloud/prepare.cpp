@@ -22,6 +22,7 @@
 #include "scaleaxis/errors.hpp"
 #include "solid/cloud/normals.hpp"
 #include "solid/cloud/outliers.hpp"
+#include "solid/dipole_tree.hpp"
 #include "spatial/extent.hpp"
 #include "spatial/point_tree.hpp"
 #include "spatial/poisson_disk.hpp"
@@ -217,8 +218,7 @@ double enclosed_share(const PreparedCloud& cloud, std::span<const Index> part, c
     double sum = 0.0;
     for (const Index i : part) {
         const Point d = cloud.cloud.points[i] - p;
-        const double length = norm(d);
-        sum += cloud.spacings[i] * cloud.spacings[i] * dot(cloud.cloud.normals[i], d) / (length * length * length);
+        sum += cloud.spacings[i] * cloud.spacings[i] * dipole_angle(cloud.cloud.normals[i], d);
     }
     return sum / (4.0 * std::numbers::pi);
 }
