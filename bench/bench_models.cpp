@@ -65,6 +65,7 @@ Json measure(const Settings& settings, const Job& job) {
             {"union_distance", result.fit->accuracy.largest_distance / result.tolerance},
             {"envelope_mean", std::max(envelope.a_to_b.mean, envelope.b_to_a.mean) / whole.tolerance},
             {"envelope_largest", envelope.max() / whole.tolerance},
+            {"axis_sheets", whole.axes[0].complex.sheets},
             {"triangles", mesh.triangles},
             {"self_intersections", mesh.self_intersections},
             {"samples", result.samples},
@@ -148,10 +149,10 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
         std::to_string(settings.batch.jobs) + " models at a time, " + std::to_string(settings.batch.threads) +
         " threads each\n\n" +
         markdown_header({"s", "models", "finished", "medial = dual", "filtered = dual", "cleaned = dual",
-                         "compact = dual", "sheets, filtered and cleaned", "vertices, cleaned and compact",
-                         "µs/vertex of simplification", "input known", "dual = solid", "dual = surface", "samples",
-                         "balls", "seconds", "seconds of the whole axis", "boundary to union, largest of all, δ",
-                         "whole envelope, medians of mean and largest, δ"});
+                         "compact = dual", "sheets, filtered, cleaned and of the whole axis",
+                         "vertices, cleaned and compact", "µs/vertex of simplification", "input known", "dual = solid",
+                         "dual = surface", "samples", "balls", "seconds", "seconds of the whole axis",
+                         "boundary to union, largest of all, δ", "whole envelope, medians of mean and largest, δ"});
     for (const double scale : settings.scales) {
         const auto total = [&](const auto& value) {
             double sum = 0.0;
@@ -180,7 +181,7 @@ std::string table(const Settings& settings, const std::vector<Json>& reports) {
              count([](const Json& r) { return is_true(r, "filtered_is_dual"); }),
              count([](const Json& r) { return is_true(r, "cleaned_is_dual"); }),
              count([](const Json& r) { return is_true(r, "compact_is_dual"); }),
-             sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0),
+             sum("sheets_after_filter", 0) + ", " + sum("sheets_after_cleaning", 0) + ", " + sum("axis_sheets", 0),
              sum("balls_out", 0) + ", " + sum("balls_compact", 0),
              fixed(1e6 * total([](const Json& r) { return r.value("simplification_seconds", 0.0); }) /
                        total([](const Json& r) { return r.value("balls_out", 0.0); }),

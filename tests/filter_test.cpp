@@ -76,16 +76,77 @@ TEST(Filter, ByAreaAsksWholeSheets) {
     EXPECT_THROW(filter(row({0, 30}), by_area), UnusableInput) << "unknown angles";
 }
 
-TEST(Filter, ByAreaKeepsSheetsOfLargerBallsThanWhereTheyHang) {
+// A square fin of a narrow sheet on two squares of a wide one, with the radius 1 where it hangs.
+MedialComplex fin_of_radius(double radius) {
     MedialComplex fin =
         complex_by_hand({{0, 0, 0}, {0, 1, 0}, {1, 0, 0}, {1, 1, 0}, {-1, 0, 0}, {-1, 1, 0}, {0, 0, 1}, {0, 1, 1}},
                         {{0, 2, 3, 1}, {0, 1, 5, 4}, {0, 1, 7, 6}}, {kLarge, kLarge, kSmall});
+    fin.radii[6] = fin.radii[7] = radius;
+    return fin;
+}
+
+TEST(Filter, ByAreaLeavesCurvesToBallsThatNothingCovers) {
     const FilterOptions by_area{.measure = SheetAngle::kByArea};
-    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 2U);
-    fin.radii[6] = 1.05;
-    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 2U) << "an error of the sampling";
-    fin.radii[6] = 1.2;
-    EXPECT_EQ(filter(fin, by_area).complex.faces.size(), 3U);
+    const MedialComplex covered = filter(fin_of_radius(0.1), by_area).complex;
+    EXPECT_EQ(covered.faces.size(), 2U);
+    EXPECT_EQ(covered.vertices.size(), 6U);
+    const MedialComplex larger = filter(fin_of_radius(1.2), by_area).complex;
+    expect_well_formed(larger);
+    EXPECT_EQ(larger.faces.size(), 2U);
+    EXPECT_EQ(larger.vertices.size(), 8U) << "both of the larger balls";
+    EXPECT_EQ(larger.edges.size(), 7U + 2U);
+}
+
+// As in a bar with so many sides: sheets around the z axis, from 0 to 4, whose radii fall from 1 on it.
+MedialComplex star(int sheets, double angle) {
+    constexpr Index kSteps = 16;
+    std::vector<Point> vertices;
+    std::vector<std::vector<Index>> faces;
+    const double width = 0.9 / std::cos(angle * std::numbers::pi / 180.0);
+    for (Index k = 0; k <= sheets; ++k) {
+        const double turn = 2.0 * std::numbers::pi * k / sheets;
+        for (Index i = 0; i <= kSteps; ++i) {
+            const double z = 4.0 * i / kSteps;
+            vertices.push_back(k == 0 ? Point{0, 0, z} : Point{width * std::cos(turn), width * std::sin(turn), z});
+            if (k > 0 && i > 0) {
+                const Index outer = k * (kSteps + 1) + i;
+                faces.push_back({i - 1, outer - 1, outer, i});
+            }
+        }
+    }
+    MedialComplex result = complex_by_hand(vertices, faces, std::vector<double>(faces.size(), angle));
+    for (std::size_t v = 0; v < vertices.size(); ++v) {
+        result.radii[v] = 1.0 - 0.9 * std::hypot(vertices[v].x, vertices[v].y) / width;
+    }
+    return result;
+}
+
+TEST(Filter, ByAreaLeavesTheCurveInWhichNarrowSheetsMeet) {
+    for (const int sheets : {2, 3, 6, 7}) {
+        for (const double angle : {12.0, 22.5, 30.0}) {
+            SCOPED_TRACE(std::to_string(sheets) + " sheets of " + std::to_string(angle));
+            const FilteredComplex filtered = filter(star(sheets, angle), {.measure = SheetAngle::kByArea});
+            expect_well_formed(filtered.complex);
+            EXPECT_EQ(filtered.complex.faces.size(), 0U);
+            EXPECT_EQ(filtered.complex.edges.size(), 16U);
+            for (const Point& p : filtered.complex.vertices) {
+                EXPECT_EQ(std::hypot(p.x, p.y), 0.0);
+            }
+            EXPECT_EQ(filtered.statistics.topology, known_topology(1, 0, 0));
+        }
+    }
+    EXPECT_EQ(filter(star(6, 31.0), {.measure = SheetAngle::kByArea}).complex.faces.size(), 6U * 16U);
+}
+
+TEST(Filter, ByAreaTakesSheetsWithoutWidthForCurves) {
+    // Between two curves one face that is wide by its angle, and no ball's thousandth across.
+    const MedialComplex crumb = complex_by_hand({{0, 0, 0}, {1, 0, 0}, {1.5, 1e-4, 0}, {2, 0, 0}, {3, 0, 0}},
+                                                {{1, 2, 3}}, {kLarge}, {{0, 1}, {3, 4}});
+    const MedialComplex filtered = filter(crumb, {.measure = SheetAngle::kByArea}).complex;
+    EXPECT_EQ(filtered.faces.size(), 0U);
+    EXPECT_EQ(topology(filtered), known_topology(1, 0, 0));
+    EXPECT_EQ(filtered.vertices.front(), (Point{0, 0, 0}));
+    EXPECT_EQ(filtered.vertices.back(), (Point{3, 0, 0}));
 }
 
 // A roof whose radius falls from 1 at the ridge to 0.5 at the eaves, one away: the cosine of the angle is 1/2.

@@ -138,6 +138,33 @@ TEST(SharpEdges, WhoseSheetsAreNarrowLoseAllOfThem) {
     }
 }
 
+// Bars with a round end, whose lengthwise edges are too blunt for sheets. What is left of a bar is a curve: at its flat
+// end it meets the sheet into the rim, its round end is at the origin.
+TEST(SharpEdges, TooBluntForSheetsLeaveTheCurveOfABar) {
+    std::vector<std::array<double, 2>> profile{{0.0, -1.0}};
+    for (int k = 1; k <= 12; ++k) {
+        const double at = k * std::numbers::pi / 24.0;
+        profile.push_back({std::sin(at), -std::cos(at)});
+    }
+    profile.push_back({1.0, 5.0});
+    profile.push_back({0.0, 5.0});
+    for (const int sides : {6, 7, 8, 12}) {
+        for (const double angle : {0.0, 0.7}) {
+            for (const double scale : {1.0, 1.1}) {
+                SCOPED_TRACE(std::to_string(sides) + " sides, turned by " + std::to_string(angle) +
+                             ", s = " + std::to_string(scale));
+                const TriangleMesh mesh = moved(revolved_mesh(profile, sides, 10.0), turn(angle));
+                const MedialComplex axis = axis_of(*mesh_solid(mesh), scale, 0.01).complex;
+                EXPECT_EQ(axis.sheets, 1);
+                EXPECT_EQ(topology(axis), known_topology(1, 0, 0));
+                const Point nearest =
+                    *std::ranges::min_element(axis.vertices, {}, [](const Point& p) { return norm(p); });
+                EXPECT_LE(norm(nearest), 0.2);
+            }
+        }
+    }
+}
+
 // Where four sheets meet in a seam those of a union meet by threes, two by two: between them slivers may be left, which
 // count as sheets. `known` is how many sheets come out today of uniform samples, the true number is that without
 // crumbs.

@@ -21,7 +21,7 @@ struct FilterOptions {
     /// Sheets and curves whose object angle is smaller are candidates for removal; degrees, [0, 90].
     double angle = 30.0;
     /// With `kByArea` curves stay, and so do sheets of half a degree more at least: edges of regular polygons are to be
-    /// kept or removed together.
+    /// kept or removed together. Where narrow sheets meet each other alone, as in a bar with six sides, a curve stays.
     SheetAngle measure = SheetAngle::kLargest;
 };
 
@@ -47,8 +47,7 @@ struct FilteredComplex {
 /// elementary collapses, which keep the homotopy type (the paper, section 4.2). The same goes for curves, chains of
 /// edges without faces, with the angles at which the boundary of the grown balls is seen. Vertices whose balls are
 /// larger than all around them stay, whatever the angles there. The results for growing angles are nested; with
-/// `kByArea`, which asks again where sheets have become one, and keeps sheets whose balls are larger than those in
-/// which they meet others, they need not be.
+/// `kByArea`, which asks again where sheets have become one, they need not be.
 /// \param complex with object angles, unless `options.angle` is 0
 /// \throws InvalidOption, UnusableInput (see `check`; or no angles), Cancelled
 SCALEAXIS_EXPORT FilteredComplex filter(const MedialComplex& complex, const FilterOptions& options = {},

@@ -13,12 +13,14 @@
 
 #include "axis/complex.hpp"
 #include "axis/edit/collapse.hpp"
+#include "axis/stages/crests.hpp"
 #include "axis/stages/stages.hpp"
+#include "base/angles.hpp"
 #include "base/compiler.hpp"
-#include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "scaleaxis/ranges.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -47,19 +49,19 @@ class PartCollapse {
 
     // Collapses a part onto the rest of the complex: its faces, and the edges that no face is left at. If something of
     // the part would remain, it undoes everything, leaves in `blocking_vertices` the ends of edges that did not vanish,
-    // and returns false.
-    bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve) {
+    // and returns false. What may leave curves vanishes from its smallest balls on, and they are those of its largest.
+    bool remove(Index part, std::span<const Index> faces, std::span<const Index> curve, bool may_leave_curves) {
         removed_.clear();
         bare_edges_.assign(curve.begin(), curve.end());
         blocking_vertices_.clear();
         for (const Index e : curve) {
             bare_for_[e] = part;
         }
-        collapse(part, faces);
+        collapse(part, faces, may_leave_curves);
         const auto is_face = [](const ElementaryCollapse& collapse) { return collapse.has_face; };
         if (std::ranges::count_if(removed_, is_face) == std::ssize(faces)) {
             for (const Index e : bare_edges_) {
-                if (remainder_.has_edge[e] != 0) {
+                if (remainder_.has_edge[e] != 0 && !may_leave_curves) {
                     append(blocking_vertices_, {complex_.edges[e][0], complex_.edges[e][1]});
                 }
             }
@@ -78,19 +80,29 @@ class PartCollapse {
     const std::vector<Index>& blocking_vertices() const { return blocking_vertices_; }
 
    private:
-    void collapse(Index part, std::span<const Index> faces) {
-        Collapses collapses(
-            complex_, remainder_,
-            [&](const ElementaryCollapse& collapse) {
-                return collapse.has_face ? complex_.face_sheets[collapse.element] == part
-                                         : bare_for_[collapse.element] == part && stays_[collapse.free] == 0;
-            },
-            [&](const ElementaryCollapse& collapse, bool) {
-                removed_.push_back(collapse);
-                if (collapse.has_face) {
-                    note_bare_edges(part, collapse.element);
-                }
-            });
+    void collapse(Index part, std::span<const Index> faces, bool from_smallest) {
+        const auto may_go = [&](const ElementaryCollapse& collapse) {
+            return collapse.has_face ? complex_.face_sheets[collapse.element] == part
+                                     : bare_for_[collapse.element] == part && stays_[collapse.free] == 0;
+        };
+        const auto note = [&](const ElementaryCollapse& collapse, const auto&) {
+            removed_.push_back(collapse);
+            if (collapse.has_face) {
+                note_bare_edges(part, collapse.element);
+            }
+        };
+        if (from_smallest) {
+            const auto radius_if_it_may = [&](const ElementaryCollapse& collapse) {
+                return may_go(collapse) ? std::optional(radius_of(collapse)) : std::nullopt;
+            };
+            run(Collapses(complex_, remainder_, radius_if_it_may, note), faces);
+        } else {
+            run(Collapses(complex_, remainder_, may_go, note), faces);
+        }
+    }
+
+    template <class AnyCollapses>
+    void run(AnyCollapses collapses, std::span<const Index> faces) {
         for (const Index f : faces) {
             for (const Index e : complex_.face_edges[f]) {
                 collapses.add_edge(e);
@@ -102,6 +114,15 @@ class PartCollapse {
             }
         }
         collapses.run();
+    }
+
+    // The mean on what goes besides the face or the edge.
+    double radius_of(const ElementaryCollapse& collapse) const {
+        if (!collapse.has_face) {
+            return complex_.radii[collapse.free];
+        }
+        const auto& [p, q] = complex_.edges[collapse.free];
+        return 0.5 * (complex_.radii[p] + complex_.radii[q]);
     }
 
     void note_bare_edges(Index part, Index face) {
@@ -129,9 +150,10 @@ constexpr double kWidePart = 0.2;
 
 // What is kept or removed as a whole: the sheets, and behind them the curves.
 struct Parts {
-    IndexLists faces;                // of every sheet
-    IndexLists curve_edges;          // of every curve
-    std::vector<double> importance;  // of every part: its object angle
+    IndexLists faces;                            // of every sheet
+    IndexLists curve_edges;                      // of every curve
+    std::vector<double> importance;              // of every part: its object angle
+    std::vector<std::uint8_t> may_leave_curves;  // of every sheet; empty: none
 
     Index size() const { return static_cast<Index>(importance.size()); }
     std::span<const Index> faces_of(Index part) const {
@@ -154,33 +176,7 @@ Parts find_sheets(const MedialComplex& complex) {
     return parts;
 }
 
-// The sheets with balls that are larger, by more than errors, than all those in which they meet others.
-std::vector<std::uint8_t> sheets_of_largest_balls(const MedialComplex& complex) {
-    constexpr Index kSeveral = -2;
-    std::vector<Index> sheet_of(complex.vertices.size(), kNone);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index v : complex.faces[f]) {
-            const bool is_other = sheet_of[v] != kNone && sheet_of[v] != complex.face_sheets[f];
-            sheet_of[v] = is_other ? kSeveral : complex.face_sheets[f];
-        }
-    }
-    for (const auto& [p, q] : curve_edges(complex)) {
-        sheet_of[p] = sheet_of[q] = kSeveral;
-    }
-    std::vector<double> inside(complex.sheets);
-    std::vector<double> shared(complex.sheets);
-    for (std::size_t f = 0; f < complex.faces.size(); ++f) {
-        for (const Index v : complex.faces[f]) {
-            double& largest = (sheet_of[v] == kSeveral ? shared : inside)[complex.face_sheets[f]];
-            largest = std::max(largest, complex.radii[v]);
-        }
-    }
-    return mapped<std::uint8_t>(inside.size(), [&](std::size_t sheet) {
-        return shared[sheet] > 0.0 && inside[sheet] > (1.0 + kRadiusError) * shared[sheet] ? 1 : 0;
-    });
-}
-
-// The sheets with the angles that a part of their area exceeds.
+// The sheets with the angles that a part of their area exceeds; 0 where they have no width.
 Parts find_sheets_by_area(const MedialComplex& complex) {
     Parts parts;
     parts.faces = faces_of_sheets(complex);
@@ -188,9 +184,18 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
     for_each_index(parts.importance.size(), [&](std::size_t sheet) {
         std::vector<std::pair<double, double>> angles_and_areas;
         double area = 0.0;
+        double radius = 0.0;
+        Box box;
         for (const Index f : parts.faces[sheet]) {
             angles_and_areas.emplace_back(complex.face_angles[f], face_area(complex, f));
             area += angles_and_areas.back().second;
+            for (const Index v : complex.faces[f]) {
+                radius = std::max(radius, complex.radii[v]);
+                box.extend(complex.vertices[v]);
+            }
+        }
+        if (area <= kNegligible * radius * box.diagonal()) {
+            return;  // without width it says nothing: in what other sheets have left of a curve
         }
         std::sort(angles_and_areas.rbegin(), angles_and_areas.rend());
         double wider = 0.0;
@@ -202,11 +207,34 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
             }
         }
     });
-    const std::vector<std::uint8_t> is_center = sheets_of_largest_balls(complex);
-    for (std::size_t sheet = 0; sheet < is_center.size(); ++sheet) {
-        parts.importance[sheet] = is_center[sheet] != 0 ? kInfinity : parts.importance[sheet];
-    }
     return parts;
+}
+
+// The vertices of narrow sheets alone.
+std::vector<std::uint8_t> on_narrow_sheets(const MedialComplex& complex, const Parts& parts, double angle) {
+    std::vector<std::uint8_t> result(complex.vertices.size());
+    const auto set_corners = [&](bool is_narrow) {
+        for (std::size_t f = 0; f < complex.faces.size(); ++f) {
+            if ((parts.importance[complex.face_sheets[f]] < angle) == is_narrow) {
+                for (const Index v : complex.faces[f]) {
+                    result[v] = is_narrow ? 1 : 0;
+                }
+            }
+        }
+    };
+    set_corners(true);
+    set_corners(false);
+    for (const auto& [p, q] : curve_edges(complex)) {
+        result[p] = result[q] = 0;
+    }
+    return result;
+}
+
+bool has_corner_in(const std::vector<std::uint8_t>& vertices, const MedialComplex& complex,
+                   std::span<const Index> faces) {
+    return std::ranges::any_of(faces, [&](Index f) {
+        return std::ranges::any_of(complex.faces[f], [&](Index v) { return vertices[v] != 0; });
+    });
 }
 
 void add_curves(Parts& parts, const MedialComplex& complex, const Remainder& remainder) {
@@ -258,7 +286,8 @@ class PartRemoval {
    private:
     void try_to_remove(Index part) {
         stop_if_cancelled_now_and_then_();
-        if (!collapse_.remove(part, parts_.faces_of(part), parts_.edges_of(part))) {
+        const bool may_leave_curves = !parts_.may_leave_curves.empty() && parts_.may_leave_curves[part] != 0;
+        if (!collapse_.remove(part, parts_.faces_of(part), parts_.edges_of(part), may_leave_curves)) {
             has_failed_[part] = 1;
             for (const Index v : collapse_.blocking_vertices()) {
                 blocked_at_vertex_.emplace(v, part);
@@ -359,13 +388,19 @@ FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex
 
 // Asks again where what went has made one sheet of two.
 FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, const Execution& execution) {
+    const double wide = angle + kClearlyWider;
+    const double cosine = cosine_of_degrees(std::min(wide, 90.0));
     MedialComplex rest = complex;
     for (std::size_t before = rest.faces.size() + 1; rest.faces.size() < before;) {
         before = rest.faces.size();
         label_sheets(rest);
         Remainder remainder(rest);
-        remove_parts(rest, find_sheets_by_area(rest), angle + kClearlyWider,
-                     std::vector<std::uint8_t>(rest.vertices.size()), remainder, execution);
+        Parts parts = find_sheets_by_area(rest);
+        std::vector<std::uint8_t> crests = crests_of_narrow_sheets(rest, on_narrow_sheets(rest, parts, wide), cosine);
+        parts.may_leave_curves = mapped<std::uint8_t>(parts.importance.size(), [&](std::size_t sheet) {
+            return parts.importance[sheet] == 0.0 || has_corner_in(crests, rest, parts.faces[sheet]) ? 1 : 0;
+        });
+        remove_parts(rest, parts, wide, std::move(crests), remainder, execution);
         rest = complex_of(remainder, rest);
     }
     return with_statistics(std::move(rest), complex);

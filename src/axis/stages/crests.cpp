@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "axis/stages/crests.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "base/disjoint_sets.hpp"
+#include "base/grouped.hpp"
+#include "base/vectors.hpp"
+#include "spatial/ball_tree.hpp"
+#include "spatial/point_tree.hpp"
+
+namespace scaleaxis::inline v1 {
+namespace {
+
+// An edge of the mesh within 60 degrees of the steepest way up has at least half of its slope.
+std::vector<Index> without_steep_edge(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
+                                      double cosine) {
+    std::vector<std::uint8_t> is_flat(is_narrow.begin(), is_narrow.end());
+    for (const auto& [p, q] : complex.edges) {
+        const double growth = complex.radii[q] - complex.radii[p];
+        if (std::abs(growth) > 0.5 * cosine * distance(complex.vertices[p], complex.vertices[q])) {
+            is_flat[growth > 0.0 ? p : q] = 0;
+        }
+    }
+    return indices_where(is_flat.size(), [&](Index v) { return is_flat[v] != 0; });
+}
+
+void erase_covered_by_others(std::vector<Index>& tops, const MedialComplex& complex,
+                             std::span<const std::uint8_t> is_narrow, double cosine) {
+    const auto others = indices_where(is_narrow.size(), [&](Index v) { return is_narrow[v] == 0; });
+    if (tops.empty() || others.empty()) {
+        return;
+    }
+    const BallTree tree = build_ball_tree(each_of<Ball>(others, [&](Index v) {
+        return Ball{complex.vertices[v], complex.radii[v] / cosine};
+    }));
+    std::erase_if(tops,
+                  [&](Index v) { return nearest_ball(tree, complex.vertices[v], -complex.radii[v]).ball != kNone; });
+}
+
+// Connected ones together, as places in `tops`, those with the largest balls first.
+std::vector<std::vector<Index>> connected(std::span<const Index> tops, const MedialComplex& complex) {
+    std::vector<Index> places(complex.vertices.size(), kNone);
+    for (Index i = 0; i < std::ssize(tops); ++i) {
+        places[tops[i]] = i;
+    }
+    DisjointSets sets(tops.size());
+    for (const auto& [p, q] : complex.edges) {
+        if (places[p] != kNone && places[q] != kNone) {
+            sets.join(places[p], places[q]);
+        }
+    }
+    const auto [numbers, count] = sets.numbered();
+    std::vector<std::vector<Index>> crests(count);
+    for (Index i = 0; i < std::ssize(tops); ++i) {
+        crests[numbers[i]].push_back(i);
+    }
+    std::ranges::stable_sort(crests, std::greater<>(), [&](const std::vector<Index>& crest) {
+        return std::ranges::max(each_of<double>(crest, [&](Index i) { return complex.radii[tops[i]]; }));
+    });
+    return crests;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
+                                                  double cosine) {
+    std::vector<std::uint8_t> stays(complex.vertices.size());
+    std::vector<Index> tops = without_steep_edge(complex, is_narrow, cosine);
+    erase_covered_by_others(tops, complex, is_narrow, cosine);
+    if (tops.empty()) {
+        return stays;
+    }
+    const PointTree tree = build_point_tree(each_of<Point>(tops, [&](Index v) { return complex.vertices[v]; }));
+    std::vector<std::uint8_t> is_covered(tops.size());
+    for (const std::vector<Index>& crest : connected(tops, complex)) {
+        if (std::ranges::all_of(crest, [&](Index i) { return is_covered[i] != 0; })) {
+            continue;
+        }
+        for (const Index i : crest) {
+            stays[tops[i]] = 1;
+            const double reach = complex.radii[tops[i]] / cosine;
+            for_each_point_near(tree, complex.vertices[tops[i]], reach, [&](Index position, double squared) {
+                const Index other = tree.order[position];
+                if (std::sqrt(squared) + complex.radii[tops[other]] <= reach) {
+                    is_covered[other] = 1;
+                }
+            });
+        }
+    }
+    return stays;
+}
+
+}  // namespace scaleaxis::inline v1
