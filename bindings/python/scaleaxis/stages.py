@@ -422,6 +422,7 @@ def filter(
     that keeps the topology: angles are those at which the boundary of the grown balls is seen.
 
     With the measure "by_area", for clean axes, sheets alone, by the angle that faces of a fifth of their area exceed.
+    Where such sheets meet each other alone, as in a bar with six sides, the curve in which they meet stays.
     """
     with telling(progress) as tell:
         return _filtered(_core.filter(core_of(complex), angle, measure, threads, tell))
