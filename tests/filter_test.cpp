@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "axis/stages/crests.hpp"
 #include "complexes.hpp"
 #include "homology.hpp"
 #include "scaleaxis/balls.hpp"
@@ -136,6 +137,38 @@ TEST(Filter, ByAreaLeavesTheCurveInWhichNarrowSheetsMeet) {
         }
     }
     EXPECT_EQ(filter(star(6, 31.0), {.measure = SheetAngle::kByArea}).complex.faces.size(), 6U * 16U);
+}
+
+// A curve of unit balls, a tenth apart, with a way of two edges to a ball that hangs on its middle.
+TEST(Crests, LoseHairsThatTheirCurveCovers) {
+    const auto left = [](const Point& end, double radius, bool is_old) {
+        std::vector<Point> vertices;
+        std::vector<std::array<Index, 2>> edges;
+        for (Index i = 0; i <= 20; ++i) {
+            vertices.push_back({0.1 * i, 0, 0});
+            if (i > 0) {
+                edges.push_back({i - 1, i});
+            }
+        }
+        vertices.push_back(0.5 * (vertices[10] + end));
+        vertices.push_back(end);
+        edges.push_back({10, 21});
+        edges.push_back({21, 22});
+        MedialComplex complex = complex_by_hand(vertices, {}, {}, edges);
+        complex.radii[21] = 0.5 * (1.0 + radius);
+        complex.radii[22] = radius;
+        Remainder remainder(complex);
+        remove_hairs(complex, std::vector<std::uint8_t>(complex.edges.size(), is_old ? 1 : 0), 1.0 / 1.16, remainder);
+        const MedialComplex rest = complex_of(remainder, complex);
+        expect_well_formed(rest);
+        EXPECT_EQ(topology(rest), known_topology(1, 0, 0));
+        return rest.vertices.size();
+    };
+    EXPECT_EQ(left({1, 0.5, 0}, 0.6, false), 21U);
+    EXPECT_EQ(left({1.5, 0.5, 0}, 0.6, false), 21U) << "covered by a ball beside that on which it hangs";
+    EXPECT_EQ(left({1, 0.5, 0}, 0.6, true), 23U) << "a curve that was there before";
+    EXPECT_EQ(left({1, 0.5, 0}, 0.7, false), 23U) << "sticks out";
+    EXPECT_EQ(left({1, 3, 0}, 1.0, false), 23U);
 }
 
 TEST(Filter, ByAreaTakesSheetsWithoutWidthForCurves) {

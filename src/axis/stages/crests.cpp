@@ -63,6 +63,28 @@ std::vector<std::vector<Index>> connected(std::span<const Index> tops, const Med
     return crests;
 }
 
+// A chain of edges from a free end on, and their vertices but that on which it hangs.
+struct Hair {
+    std::vector<Index> edges;
+    std::vector<Index> vertices;
+    bool hangs_on_more = false;  // than a curve that was there before, or nothing
+};
+
+Hair hair_from(Index end, const MedialComplex& complex, std::span<const std::uint8_t> is_curve,
+               const Remainder& remainder) {
+    Hair hair;
+    Index edge = remainder.edges_at_vertex[end].combined;
+    for (Index at = end;; edge ^= remainder.edges_at_vertex[at].combined) {  // the other one at that vertex
+        hair.edges.push_back(edge);
+        hair.vertices.push_back(at);
+        at = other_end(complex.edges[edge], at);
+        if (is_curve[edge] != 0 || remainder.edges_at_vertex[at].count != 2) {
+            hair.hangs_on_more = is_curve[edge] == 0 && remainder.edges_at_vertex[at].count > 2;
+            return hair;
+        }
+    }
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
@@ -91,6 +113,46 @@ std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, 
         }
     }
     return stays;
+}
+
+void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_curve, double cosine,
+                  Remainder& remainder) {
+    const auto is_bare = [&](Index e) { return remainder.has_edge[e] != 0 && remainder.faces_at_edge[e].count == 0; };
+    std::vector<Index> ends = indices_where(complex.vertices.size(), [&](Index v) {
+        const Cofaces& edges = remainder.edges_at_vertex[v];
+        return edges.count == 1 && is_bare(edges.combined) && is_curve[edges.combined] == 0;
+    });
+    if (ends.empty()) {
+        return;
+    }
+    std::ranges::stable_sort(ends, {}, [&](Index v) { return complex.radii[v]; });
+    std::vector<Index> others;
+    for (Index e = 0; e < std::ssize(complex.edges); ++e) {
+        if (is_bare(e)) {
+            others.insert(others.end(), complex.edges[e].begin(), complex.edges[e].end());
+        }
+    }
+    const PointTree tree = build_point_tree(each_of<Point>(others, [&](Index v) { return complex.vertices[v]; }));
+    const double reach = std::ranges::max(each_of<double>(others, [&](Index v) { return complex.radii[v]; })) / cosine;
+    for (const Index end : ends) {
+        const Hair hair = hair_from(end, complex, is_curve, remainder);
+        const auto is_covered = [&](Index v) {
+            bool result = false;
+            for_each_point_near(tree, complex.vertices[v], reach, [&](Index position, double squared) {
+                const Index u = others[tree.order[position]];
+                result = result ||
+                         (std::sqrt(squared) + complex.radii[v] <= complex.radii[u] / cosine &&
+                          remainder.has_vertex[u] != 0 && std::ranges::find(hair.vertices, u) == hair.vertices.end());
+            });
+            return result;
+        };
+        if (hair.hangs_on_more && std::ranges::all_of(hair.vertices, is_covered)) {
+            for (std::size_t i = 0; i < hair.edges.size(); ++i) {
+                remainder.remove_edge(complex, hair.edges[i]);
+                remainder.has_vertex[hair.vertices[i]] = 0;
+            }
+        }
+    }
 }
 
 }  // namespace scaleaxis::inline v1

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "axis/edit/remainder.hpp"
 #include "scaleaxis/medial_axis.hpp"
 
 namespace scaleaxis::inline v1 {
@@ -23,5 +24,12 @@ namespace scaleaxis::inline v1 {
 /// \param cosine of the largest object angle of a narrow sheet
 std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
                                                   double cosine);
+
+/// Takes the hairs away that stand off curves which sheets have become: ways to vertices that none of the largest balls
+/// covered while the curve had gaps. Those that other balls on curves cover now go, the smallest first.
+///
+/// \param is_curve 1 for edges that were without faces before: they stay
+void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_curve, double cosine,
+                  Remainder& remainder);
 
 }  // namespace scaleaxis::inline v1

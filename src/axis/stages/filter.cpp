@@ -400,7 +400,10 @@ FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, con
         parts.may_leave_curves = mapped<std::uint8_t>(parts.importance.size(), [&](std::size_t sheet) {
             return parts.importance[sheet] == 0.0 || has_corner_in(crests, rest, parts.faces[sheet]) ? 1 : 0;
         });
+        const auto is_curve = mapped<std::uint8_t>(
+            rest.edges.size(), [&](std::size_t e) { return remainder.faces_at_edge[e].count == 0 ? 1 : 0; });
         remove_parts(rest, parts, wide, std::move(crests), remainder, execution);
+        remove_hairs(rest, is_curve, cosine, remainder);
         rest = complex_of(remainder, rest);
     }
     return with_statistics(std::move(rest), complex);
