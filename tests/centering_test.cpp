@@ -250,14 +250,10 @@ TEST(Centering, CurvesGoToTheMiddle) {
     // A square rod, longer than what is seen of it, and a curve that zigzags around its axis.
     const std::unique_ptr<Solid> rod = mesh_solid(box_mesh({-1, -1, -20}, {1, 1, 20}, 2));
     std::vector<Point> points;
-    std::vector<std::array<Index, 2>> edges;
     for (int i = 0; i <= 20; ++i) {
         points.push_back({i % 2 == 0 ? 0.05 : -0.05, 0.02, -5.0 + 0.5 * i});
-        if (i > 0) {
-            edges.push_back({i - 1, i});
-        }
     }
-    MedialComplex curve = complex_by_hand(points, {}, {}, edges);
+    MedialComplex curve = complex_by_hand(points, {}, {}, chain_edges(21));
     std::ranges::fill(curve.radii, 0.9);
     const MedialComplex after = center(curve, *rod, {.tolerance = 0.2}).complex;
     for (std::size_t v = 1; v + 1 < points.size(); ++v) {

@@ -44,6 +44,15 @@ inline MedialComplex complex_by_hand(const std::vector<Point>& vertices, const s
     return complex;
 }
 
+/// The edges of a chain of vertices from the first one on.
+inline std::vector<std::array<Index, 2>> chain_edges(Index vertices) {
+    std::vector<std::array<Index, 2>> edges;
+    for (Index i = 1; i < vertices; ++i) {
+        edges.push_back({i - 1, i});
+    }
+    return edges;
+}
+
 using RadiusAt = std::function<double(const Point&)>;
 
 inline MedialComplex with_radii(MedialComplex complex, const RadiusAt& radius) {

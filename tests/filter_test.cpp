@@ -143,13 +143,10 @@ TEST(Filter, ByAreaLeavesTheCurveInWhichNarrowSheetsMeet) {
 TEST(Crests, LoseHairsThatTheirCurveCovers) {
     const auto left = [](const Point& end, double radius, bool is_old) {
         std::vector<Point> vertices;
-        std::vector<std::array<Index, 2>> edges;
         for (Index i = 0; i <= 20; ++i) {
             vertices.push_back({0.1 * i, 0, 0});
-            if (i > 0) {
-                edges.push_back({i - 1, i});
-            }
         }
+        std::vector<std::array<Index, 2>> edges = chain_edges(21);
         vertices.push_back(0.5 * (vertices[10] + end));
         vertices.push_back(end);
         edges.push_back({10, 21});

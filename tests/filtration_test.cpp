@@ -260,13 +260,10 @@ MedialComplex axis_of(const TriangleMesh& mesh, double delta = 0.02) {
 /// at the height h above the axis.
 Filtration of_thorn(double h, double r) {
     std::vector<Point> vertices;
-    std::vector<std::array<Index, 2>> edges;
     for (int i = 0; i <= 24; ++i) {
         vertices.push_back({0.25 * i, 0, 0});
-        if (i > 0) {
-            edges.push_back({i - 1, i});
-        }
     }
+    std::vector<std::array<Index, 2>> edges = chain_edges(25);
     for (int k = 1; k <= 4; ++k) {
         vertices.push_back({3.0, 0.25 * h * k, 0});
         edges.push_back({k == 1 ? 12 : 24 + k - 1, 24 + k});

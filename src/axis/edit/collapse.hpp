@@ -64,9 +64,8 @@ class Collapses {
 
     /// From a free vertex on. Does nothing if it is not free.
     void add_vertex(Index vertex) {
-        const Cofaces& edges = remainder_.edges_at_vertex[vertex];
-        if (edges.count == 1 && remainder_.faces_at_edge[edges.combined].count == 0) {
-            add({false, edges.combined, vertex});
+        if (const Index edge = remainder_.only_bare_edge(vertex); edge != kNone) {
+            add({false, edge, vertex});
         }
     }
 

@@ -43,6 +43,12 @@ struct Remainder {
         return faces.count == 1 ? faces.combined : kNone;
     }
 
+    /// The only edge at a vertex if it has no faces, else `kNone`.
+    Index only_bare_edge(Index vertex) const {
+        const Cofaces& edges = edges_at_vertex[vertex];
+        return edges.count == 1 && faces_at_edge[edges.combined].count == 0 ? edges.combined : kNone;
+    }
+
     void remove_face(const MedialComplex& complex, Index face) {
         has_face[face] = 0;
         for (const Index e : complex.face_edges[face]) {

@@ -383,13 +383,12 @@ class FaceCollapse {
     // that goes on is the middle of a limb.
     void remove_spur(Index v) {
         const MedialComplex& complex = divided_.complex;
-        while (remainder_.edges_at_vertex[v].count == 1) {
-            const Index edge = remainder_.edges_at_vertex[v].combined;
+        for (Index edge = remainder_.only_bare_edge(v); edge != kNone; edge = remainder_.only_bare_edge(v)) {
             const Index next = other_end(complex.edges[edge], v);
             const auto way = [&](Index tip) { return distance(complex.vertices[tip], complex.vertices[next]); };
             const double thickness = divided_.radii[tips_[v]] + way(tips_[v]) - divided_.radii[next];
-            if (has_faces_[edge] == 0 || remainder_.faces_at_edge[edge].count != 0 ||
-                way(tips_[v]) > divided_.vertex_paths[next] || thickness > kCurveFactor * thickness_) {
+            if (has_faces_[edge] == 0 || way(tips_[v]) > divided_.vertex_paths[next] ||
+                thickness > kCurveFactor * thickness_) {
                 return;
             }
             remainder_.remove_edge(complex, edge);

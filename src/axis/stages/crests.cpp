@@ -5,14 +5,19 @@
 #include <cmath>
 #include <functional>
 
+#include "axis/complex.hpp"
 #include "base/disjoint_sets.hpp"
-#include "base/grouped.hpp"
 #include "base/vectors.hpp"
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
+
+// Does a ball that stays cover one that goes? \param squared distance of their centres
+bool covers(const MedialComplex& complex, Index stays, Index goes, double squared, double cosine) {
+    return std::sqrt(squared) + complex.radii[goes] <= complex.radii[stays] / cosine;
+}
 
 // An edge of the mesh within 60 degrees of the steepest way up has at least half of its slope.
 std::vector<Index> without_steep_edge(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
@@ -73,7 +78,7 @@ struct Hair {
 Hair hair_from(Index end, const MedialComplex& complex, std::span<const std::uint8_t> is_curve,
                const Remainder& remainder) {
     Hair hair;
-    Index edge = remainder.edges_at_vertex[end].combined;
+    Index edge = remainder.only_bare_edge(end);
     for (Index at = end;; edge ^= remainder.edges_at_vertex[at].combined) {  // the other one at that vertex
         hair.edges.push_back(edge);
         hair.vertices.push_back(at);
@@ -103,10 +108,10 @@ std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, 
         }
         for (const Index i : crest) {
             stays[tops[i]] = 1;
-            const double reach = complex.radii[tops[i]] / cosine;
-            for_each_point_near(tree, complex.vertices[tops[i]], reach, [&](Index position, double squared) {
+            const Ball ball = ball_at(complex, tops[i]);
+            for_each_point_near(tree, ball.center, ball.radius / cosine, [&](Index position, double squared) {
                 const Index other = tree.order[position];
-                if (std::sqrt(squared) + complex.radii[tops[other]] <= reach) {
+                if (covers(complex, tops[i], tops[other], squared, cosine)) {
                     is_covered[other] = 1;
                 }
             });
@@ -119,8 +124,8 @@ void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is
                   Remainder& remainder) {
     const auto is_bare = [&](Index e) { return remainder.has_edge[e] != 0 && remainder.faces_at_edge[e].count == 0; };
     std::vector<Index> ends = indices_where(complex.vertices.size(), [&](Index v) {
-        const Cofaces& edges = remainder.edges_at_vertex[v];
-        return edges.count == 1 && is_bare(edges.combined) && is_curve[edges.combined] == 0;
+        const Index edge = remainder.only_bare_edge(v);
+        return edge != kNone && is_curve[edge] == 0;
     });
     if (ends.empty()) {
         return;
@@ -140,9 +145,8 @@ void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is
             bool result = false;
             for_each_point_near(tree, complex.vertices[v], reach, [&](Index position, double squared) {
                 const Index u = others[tree.order[position]];
-                result = result ||
-                         (std::sqrt(squared) + complex.radii[v] <= complex.radii[u] / cosine &&
-                          remainder.has_vertex[u] != 0 && std::ranges::find(hair.vertices, u) == hair.vertices.end());
+                result = result || (covers(complex, u, v, squared, cosine) && remainder.has_vertex[u] != 0 &&
+                                    std::ranges::find(hair.vertices, u) == hair.vertices.end());
             });
             return result;
         };

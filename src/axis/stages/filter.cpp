@@ -118,11 +118,8 @@ class PartCollapse {
 
     // The mean on what goes besides the face or the edge.
     double radius_of(const ElementaryCollapse& collapse) const {
-        if (!collapse.has_face) {
-            return complex_.radii[collapse.free];
-        }
-        const auto& [p, q] = complex_.edges[collapse.free];
-        return 0.5 * (complex_.radii[p] + complex_.radii[q]);
+        return collapse.has_face ? mean_ball(complex_, complex_.edges[collapse.free]).radius
+                                 : complex_.radii[collapse.free];
     }
 
     void note_bare_edges(Index part, Index face) {

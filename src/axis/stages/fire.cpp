@@ -294,12 +294,8 @@ class Burning {
     // If a vertex is left with one edge, without faces: an edge that faces have left behind the front burns at once,
     // one of a curve in its time.
     void burn_on_from(Index vertex) {
-        while (remainder_.edges_at_vertex[vertex].count == 1) {
-            const Index edge = remainder_.edges_at_vertex[vertex].combined;
+        for (Index edge = remainder_.only_bare_edge(vertex); edge != kNone; edge = remainder_.only_bare_edge(vertex)) {
             const Index next = other_end(complex_.edges[edge], vertex);
-            if (remainder_.faces_at_edge[edge].count != 0) {
-                return;
-            }
             if (sides_.of_edge[edge].empty()) {
                 if (curve_front_[vertex] == kNone || !is_inside_curve(vertex)) {
                     curve_front_[vertex] = static_cast<Index>(fronts_.size());
