@@ -139,33 +139,34 @@ TEST(Filter, ByAreaLeavesTheCurveInWhichNarrowSheetsMeet) {
     EXPECT_EQ(filter(star(6, 31.0), {.measure = SheetAngle::kByArea}).complex.faces.size(), 6U * 16U);
 }
 
-// A curve of unit balls, a tenth apart, with a way of two edges to a ball that hangs on its middle.
+// A curve of unit balls, two long, with a way of two edges to a ball that hangs on its middle.
 TEST(Crests, LoseHairsThatTheirCurveCovers) {
-    const auto left = [](const Point& end, double radius, bool is_old) {
+    const auto left = [](const Point& end, double radius, bool is_narrow, Index steps) {
         std::vector<Point> vertices;
-        for (Index i = 0; i <= 20; ++i) {
-            vertices.push_back({0.1 * i, 0, 0});
+        for (Index i = 0; i <= steps; ++i) {
+            vertices.push_back({2.0 * i / steps, 0, 0});
         }
-        std::vector<std::array<Index, 2>> edges = chain_edges(21);
-        vertices.push_back(0.5 * (vertices[10] + end));
+        std::vector<std::array<Index, 2>> edges = chain_edges(steps + 1);
+        vertices.push_back(0.5 * (vertices[steps / 2] + end));
         vertices.push_back(end);
-        edges.push_back({10, 21});
-        edges.push_back({21, 22});
+        edges.push_back({steps / 2, steps + 1});
+        edges.push_back({steps + 1, steps + 2});
         MedialComplex complex = complex_by_hand(vertices, {}, {}, edges);
-        complex.radii[21] = 0.5 * (1.0 + radius);
-        complex.radii[22] = radius;
+        complex.radii[steps + 1] = 0.5 * (1.0 + radius);
+        complex.radii[steps + 2] = radius;
         Remainder remainder(complex);
-        remove_hairs(complex, std::vector<std::uint8_t>(complex.edges.size(), is_old ? 1 : 0), 1.0 / 1.16, remainder);
+        remove_hairs(complex, std::vector<std::uint8_t>(vertices.size(), is_narrow ? 1 : 0), 1.0 / 1.16, remainder);
         const MedialComplex rest = complex_of(remainder, complex);
         expect_well_formed(rest);
         EXPECT_EQ(topology(rest), known_topology(1, 0, 0));
         return rest.vertices.size();
     };
-    EXPECT_EQ(left({1, 0.5, 0}, 0.6, false), 21U);
-    EXPECT_EQ(left({1.5, 0.5, 0}, 0.6, false), 21U) << "covered by a ball beside that on which it hangs";
-    EXPECT_EQ(left({1, 0.5, 0}, 0.6, true), 23U) << "a curve that was there before";
-    EXPECT_EQ(left({1, 0.5, 0}, 0.7, false), 23U) << "sticks out";
-    EXPECT_EQ(left({1, 3, 0}, 1.0, false), 23U);
+    EXPECT_EQ(left({1, 0.5, 0}, 0.6, true, 20), 21U);
+    EXPECT_EQ(left({1.5, 0.5, 0}, 0.6, true, 20), 21U) << "covered by a ball beside that on which it hangs";
+    EXPECT_EQ(left({1.5, 0.5, 0}, 0.6, true, 2), 3U) << "covered by a ball between vertices";
+    EXPECT_EQ(left({1, 0.5, 0}, 0.6, false, 20), 23U) << "hangs on what was no narrow sheet";
+    EXPECT_EQ(left({1, 0.5, 0}, 0.7, true, 20), 23U) << "sticks out";
+    EXPECT_EQ(left({1, 3, 0}, 1.0, true, 20), 23U);
 }
 
 TEST(Filter, ByAreaTakesSheetsWithoutWidthForCurves) {

@@ -317,29 +317,33 @@ class Division {
 };
 
 // A sheet that stays along most of a seam stays along all of it, as far as the others there stay: else the seam would
-// open, and they become one.
+// open, and they become one. Where others go, as crumbs do, the seam goes on.
 void keep_along_seams(Divided& divided, const Sides& sides) {
     const MedialComplex& complex = divided.complex;
     const Sectors sectors = sectors_of(complex, sides);
     const auto is_low = [&](Index side) { return divided.is_low[sides.face_of[side]] != 0; };
-    const auto for_each_side_that_opens = [&](const auto& visit) {
+    const auto for_each_side = [&](const auto& visit) {  // that stays, or goes alone
         for (std::size_t e = 0; e < complex.edges.size(); ++e) {
             const std::span<const Index> at = sides.of_edge[e];
-            const auto low = at.size() > 2 ? std::ranges::count_if(at, is_low) : 2;
+            if (at.size() < 3) {
+                continue;
+            }
+            const auto& [p, q] = complex.edges[e];
+            const double length = distance(complex.vertices[p], complex.vertices[q]);
+            const auto low = std::ranges::count_if(at, is_low);
             for (const Index side : at) {
-                if (low == (is_low(side) ? 1 : 0)) {
-                    const std::array<Index, 2> corners = corners_at_ends(complex, sides, side);
-                    const auto& [p, q] = complex.edges[e];
-                    const double length = distance(complex.vertices[p], complex.vertices[q]);
-                    visit(sectors.of_corner[corners[0]], sectors.of_corner[corners[1]], low == 0 ? length : -length);
+                if (!is_low(side) || low == 1) {
+                    const auto [a, b] = corners_at_ends(complex, sides, side);
+                    const double more = low == 0 ? length : is_low(side) ? -length : 0.0;
+                    visit(sectors.of_corner[a], sectors.of_corner[b], more);
                 }
             }
         }
     };
     DisjointSets stretches(sectors.vertices.size());
-    for_each_side_that_opens([&](Index p, Index q, double) { stretches.join(p, q); });
+    for_each_side([&](Index a, Index b, double) { stretches.join(a, b); });
     std::vector<double> stays(sectors.vertices.size());  // how much longer the part that stays is
-    for_each_side_that_opens([&](Index p, Index, double length) { stays[stretches.find(p)] += length; });
+    for_each_side([&](Index a, Index, double length) { stays[stretches.find(a)] += length; });
     for (std::size_t c = 0; c < sectors.of_corner.size(); ++c) {
         if (stays[stretches.find(sectors.of_corner[c])] > 0.0) {
             divided.is_low[sides.face_of[c]] = 0;

@@ -2,6 +2,7 @@
 #include "axis/stages/crests.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 
@@ -10,6 +11,7 @@
 #include "base/vectors.hpp"
 #include "spatial/ball_tree.hpp"
 #include "spatial/point_tree.hpp"
+#include "spatial/slab.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
@@ -68,26 +70,30 @@ std::vector<std::vector<Index>> connected(std::span<const Index> tops, const Med
     return crests;
 }
 
+// Does one of the balls along an edge that stays cover one that goes?
+bool covers(const MedialComplex& complex, Index edge, Index goes, double cosine) {
+    const auto grown = [&](Index v) { return Ball{complex.vertices[v], complex.radii[v] / cosine}; };
+    const auto& [p, q] = complex.edges[edge];
+    return nearest_ball(Slab(std::array{grown(p), grown(q)}), complex.vertices[goes]).distance <= -complex.radii[goes];
+}
+
 // A chain of edges from a free end on, and their vertices but that on which it hangs.
 struct Hair {
     std::vector<Index> edges;
     std::vector<Index> vertices;
-    bool hangs_on_more = false;  // than a curve that was there before, or nothing
+    Index root = kNone;
 };
 
-Hair hair_from(Index end, const MedialComplex& complex, std::span<const std::uint8_t> is_curve,
-               const Remainder& remainder) {
-    Hair hair;
+Hair hair_from(Index end, const MedialComplex& complex, const Remainder& remainder) {
+    Hair hair{{}, {}, end};
     Index edge = remainder.only_bare_edge(end);
-    for (Index at = end;; edge ^= remainder.edges_at_vertex[at].combined) {  // the other one at that vertex
+    do {
         hair.edges.push_back(edge);
-        hair.vertices.push_back(at);
-        at = other_end(complex.edges[edge], at);
-        if (is_curve[edge] != 0 || remainder.edges_at_vertex[at].count != 2) {
-            hair.hangs_on_more = is_curve[edge] == 0 && remainder.edges_at_vertex[at].count > 2;
-            return hair;
-        }
-    }
+        hair.vertices.push_back(hair.root);
+        hair.root = other_end(complex.edges[edge], hair.root);
+        edge ^= remainder.edges_at_vertex[hair.root].combined;  // the other one there, if there are two
+    } while (remainder.edges_at_vertex[hair.root].count == 2);
+    return hair;
 }
 
 }  // namespace
@@ -120,37 +126,36 @@ std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, 
     return stays;
 }
 
-void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_curve, double cosine,
+void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow, double cosine,
                   Remainder& remainder) {
-    const auto is_bare = [&](Index e) { return remainder.has_edge[e] != 0 && remainder.faces_at_edge[e].count == 0; };
-    std::vector<Index> ends = indices_where(complex.vertices.size(), [&](Index v) {
-        const Index edge = remainder.only_bare_edge(v);
-        return edge != kNone && is_curve[edge] == 0;
-    });
-    if (ends.empty()) {
-        return;
-    }
+    std::vector<Index> ends =
+        indices_where(complex.vertices.size(), [&](Index v) { return remainder.only_bare_edge(v) != kNone; });
     std::ranges::stable_sort(ends, {}, [&](Index v) { return complex.radii[v]; });
-    std::vector<Index> others;
-    for (Index e = 0; e < std::ssize(complex.edges); ++e) {
-        if (is_bare(e)) {
-            others.insert(others.end(), complex.edges[e].begin(), complex.edges[e].end());
-        }
-    }
-    const PointTree tree = build_point_tree(each_of<Point>(others, [&](Index v) { return complex.vertices[v]; }));
-    const double reach = std::ranges::max(each_of<double>(others, [&](Index v) { return complex.radii[v]; })) / cosine;
+    const std::vector<Index> curves = indices_where(complex.edges.size(), [&](Index e) {
+        return remainder.has_edge[e] != 0 && remainder.faces_at_edge[e].count == 0;
+    });
+    double reach = 0.0;
+    const auto middles = each_of<Point>(curves, [&](Index e) {
+        const auto& [p, q] = complex.edges[e];
+        reach = std::max(reach, std::max(complex.radii[p], complex.radii[q]) / cosine +
+                                    0.5 * distance(complex.vertices[p], complex.vertices[q]));
+        return midpoint(complex.vertices[p], complex.vertices[q]);
+    });
+    const PointTree tree = build_point_tree(middles);
     for (const Index end : ends) {
-        const Hair hair = hair_from(end, complex, is_curve, remainder);
+        const Hair hair = hair_from(end, complex, remainder);
         const auto is_covered = [&](Index v) {
             bool result = false;
-            for_each_point_near(tree, complex.vertices[v], reach, [&](Index position, double squared) {
-                const Index u = others[tree.order[position]];
-                result = result || (covers(complex, u, v, squared, cosine) && remainder.has_vertex[u] != 0 &&
-                                    std::ranges::find(hair.vertices, u) == hair.vertices.end());
+            for_each_point_near(tree, complex.vertices[v], reach, [&](Index position, double) {
+                const Index e = curves[tree.order[position]];
+                result =
+                    result || (remainder.has_edge[e] != 0 && std::ranges::find(hair.edges, e) == hair.edges.end() &&
+                               covers(complex, e, v, cosine));
             });
             return result;
         };
-        if (hair.hangs_on_more && std::ranges::all_of(hair.vertices, is_covered)) {
+        if (is_narrow[hair.root] != 0 && remainder.edges_at_vertex[hair.root].count > 2 &&
+            std::ranges::all_of(hair.vertices, is_covered)) {
             for (std::size_t i = 0; i < hair.edges.size(); ++i) {
                 remainder.remove_edge(complex, hair.edges[i]);
                 remainder.has_vertex[hair.vertices[i]] = 0;

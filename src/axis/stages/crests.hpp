@@ -25,11 +25,12 @@ namespace scaleaxis::inline v1 {
 std::vector<std::uint8_t> crests_of_narrow_sheets(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow,
                                                   double cosine);
 
-/// Takes the hairs away that stand off curves which sheets have become: ways to vertices that none of the largest balls
-/// covered while the curve had gaps. Those that other balls on curves cover now go, the smallest first.
+/// Takes the hairs away that stand off curves which narrow sheets have become: ways to vertices that nothing covered
+/// while these sheets were there, or while the curve had gaps. Those that the balls of other curves cover now go, the
+/// smallest first.
 ///
-/// \param is_curve 1 for edges that were without faces before: they stay
-void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_curve, double cosine,
+/// \param is_narrow 1 for vertices that had faces of narrow sheets alone: what hangs there may be a hair
+void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is_narrow, double cosine,
                   Remainder& remainder);
 
 }  // namespace scaleaxis::inline v1

@@ -207,7 +207,7 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
     return parts;
 }
 
-// The vertices of narrow sheets alone.
+// The vertices that have faces of narrow sheets alone.
 std::vector<std::uint8_t> on_narrow_sheets(const MedialComplex& complex, const Parts& parts, double angle) {
     std::vector<std::uint8_t> result(complex.vertices.size());
     const auto set_corners = [&](bool is_narrow) {
@@ -221,9 +221,6 @@ std::vector<std::uint8_t> on_narrow_sheets(const MedialComplex& complex, const P
     };
     set_corners(true);
     set_corners(false);
-    for (const auto& [p, q] : curve_edges(complex)) {
-        result[p] = result[q] = 0;
-    }
     return result;
 }
 
@@ -393,14 +390,17 @@ FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, con
         label_sheets(rest);
         Remainder remainder(rest);
         Parts parts = find_sheets_by_area(rest);
-        std::vector<std::uint8_t> crests = crests_of_narrow_sheets(rest, on_narrow_sheets(rest, parts, wide), cosine);
+        const std::vector<std::uint8_t> is_narrow = on_narrow_sheets(rest, parts, wide);
+        std::vector<std::uint8_t> may_go = is_narrow;
+        for (const auto& [p, q] : curve_edges(rest)) {
+            may_go[p] = may_go[q] = 0;
+        }
+        std::vector<std::uint8_t> crests = crests_of_narrow_sheets(rest, may_go, cosine);
         parts.may_leave_curves = mapped<std::uint8_t>(parts.importance.size(), [&](std::size_t sheet) {
             return parts.importance[sheet] == 0.0 || has_corner_in(crests, rest, parts.faces[sheet]) ? 1 : 0;
         });
-        const auto is_curve = mapped<std::uint8_t>(
-            rest.edges.size(), [&](std::size_t e) { return remainder.faces_at_edge[e].count == 0 ? 1 : 0; });
         remove_parts(rest, parts, wide, std::move(crests), remainder, execution);
-        remove_hairs(rest, is_curve, cosine, remainder);
+        remove_hairs(rest, is_narrow, cosine, remainder);
         rest = complex_of(remainder, rest);
     }
     return with_statistics(std::move(rest), complex);
