@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 #include <numbers>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -145,7 +146,34 @@ inline TriangleMesh revolved_mesh(const std::vector<std::array<double, 2>>& poly
     return mesh;
 }
 
-/// A prism over a polygon in the plane, counter-clockwise; its caps are fans around their first corner.
+/// Triangles of a polygon in the plane, counter-clockwise, by cutting off ears: a fan around its first corner if all of
+/// it can be seen from there.
+inline std::vector<std::array<Index, 3>> triangles_of(const std::vector<std::array<double, 2>>& polygon) {
+    const auto twice_area = [&](Index a, Index b, Index c) {
+        return (polygon[b][0] - polygon[a][0]) * (polygon[c][1] - polygon[a][1]) -
+               (polygon[b][1] - polygon[a][1]) * (polygon[c][0] - polygon[a][0]);
+    };
+    std::vector<Index> left(polygon.size());
+    std::iota(left.begin(), left.end(), 0);
+    std::vector<std::array<Index, 3>> triangles;
+    for (std::size_t i = 1; left.size() > 2 && i < left.size(); ++i) {
+        const Index a = left[i - 1];
+        const Index b = left[i];
+        const Index c = left[(i + 1) % left.size()];
+        const bool is_ear = twice_area(a, b, c) > 0.0 && std::ranges::none_of(left, [&](Index v) {
+                                return v != a && v != b && v != c && twice_area(a, b, v) >= 0.0 &&
+                                       twice_area(b, c, v) >= 0.0 && twice_area(c, a, v) >= 0.0;
+                            });
+        if (is_ear) {
+            triangles.push_back({a, b, c});
+            left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
+            i = 0;
+        }
+    }
+    return triangles;
+}
+
+/// A prism over a polygon in the plane, counter-clockwise.
 inline TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
     TriangleMesh mesh;
     const auto n = static_cast<Index>(polygon.size());
@@ -158,10 +186,10 @@ inline TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, dou
         const Index next = (i + 1) % n;
         mesh.triangles.push_back({i, next, n + next});
         mesh.triangles.push_back({i, n + next, n + i});
-        if (i > 0 && next > 0) {
-            mesh.triangles.push_back({0, next, i});
-            mesh.triangles.push_back({n, n + i, n + next});
-        }
+    }
+    for (const auto& [a, b, c] : triangles_of(polygon)) {
+        mesh.triangles.push_back({a, c, b});
+        mesh.triangles.push_back({n + a, n + b, n + c});
     }
     return mesh;
 }

@@ -468,7 +468,7 @@ MedialComplex walls_of(const MedialComplex& complex, const Flags& cores) {
     const auto with_whole_seams = [](const MedialComplex& walls) {
         MedialComplex result = without_short_edges_at_seams(walls, kRadiusError);
         const auto reaches = each_of<double>(result.radii, [](double radius) { return kNearby * radius; });
-        return with_seams_to_borders(std::move(result), reaches);
+        return with_seams_to_borders(std::move(result), reaches, true);
     };
     const MedialComplex walls = with_whole_seams(part(complex, without_crumbs(complex, in_walls(complex, cores))));
     return without_flaps(with_whole_seams(without_slivers(walls, kInfinity)));

@@ -555,7 +555,7 @@ MedialComplex with_room_around(const std::vector<Sliver>& slivers, const MedialC
 // Where a seam ends and a sheet goes on around it, from one side of it to the other: the shortest edge from there to
 // the border of that sheet.
 std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex, std::span<const double> most,
-                                                    double factor) {
+                                                    double factor, bool may_be_flat) {
     const IndexLists faces_at = faces_at_edges(complex);
     const Flags is_at_border = vertices_at_borders(complex);
     const auto next_edge = [&](Index face, Index edge, Index v) {
@@ -590,7 +590,7 @@ std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex
                     face = faces_at[edge][faces_at[edge][0] == face ? 1 : 0];
                     edge = next_edge(face, edge, v);
                 }
-                if (edge == seam && shortest.second[0] != kNone && is_turn(seam, first, face)) {
+                if (edge == seam && shortest.second[0] != kNone && (may_be_flat || is_turn(seam, first, face))) {
                     found.push_back(shortest);
                 }
             }
@@ -625,12 +625,12 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {
     // With half of the tolerance four seams in ten stay open that end too early.
     const std::vector<double> reaches(complex.vertices.size(), tolerance);
-    return with_seams_to_borders(std::move(complex), reaches);
+    return with_seams_to_borders(std::move(complex), reaches, false);
 }
 
-MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches) {
+MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches, bool may_be_flat) {
     // Polygons are cut first: then more edges lead there.
-    const auto ends = edges_around_ends(complex, reaches, 2.0);
+    const auto ends = edges_around_ends(complex, reaches, 2.0, may_be_flat);
     if (ends.empty()) {
         return complex;
     }
@@ -640,7 +640,7 @@ MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const doubl
     }
     complex = with_triangles_at(is_end, complex);
     label_sheets(complex);
-    const auto edges = edges_around_ends(complex, reaches, 1.0);
+    const auto edges = edges_around_ends(complex, reaches, 1.0, may_be_flat);
     Contraction contraction(std::move(complex));
     for (const auto& [p, q] : edges) {
         contraction.contract(p, q);

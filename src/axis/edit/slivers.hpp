@@ -18,7 +18,8 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance);
 /// sheets on both sides of them are two.
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance);
 /// \param reaches of the vertices: how far from the end of a seam the border may be
-MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches);
+/// \param may_be_flat sheets need not be folded: where walls meet two of them often lie in one plane
+MedialComplex with_seams_to_borders(MedialComplex complex, std::span<const double> reaches, bool may_be_flat);
 
 /// Contracts edges with an end on a seam that are shorter than this part of the smaller radius at their ends where that
 /// keeps the homotopy type.
