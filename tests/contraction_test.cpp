@@ -298,6 +298,34 @@ TEST(Contraction, DrawsCrumbsTogetherHoweverSmallTheirBalls) {
     }
 }
 
+TEST(Contraction, DrawsACrumbTogetherAllOfWhoseSidesHaveANeighborInCommon) {
+    // Each of the sheets goes from one side of the crumb around a corner to the next, and on to a wide part.
+    const MedialComplex complex = with_marks(complex_by_hand({{0, 0, 0},
+                                                              {0.05, 0, 0},
+                                                              {0.02, 0.04, 0},
+                                                              {-1, -1, 1},
+                                                              {1, 1, 1},
+                                                              {1, -1, -1},
+                                                              {-1, 2, 1},
+                                                              {-1, 3, 1},
+                                                              {3, 0, -1}},
+                                                             {{0, 1, 2},
+                                                              {0, 1, 3},
+                                                              {0, 2, 3},
+                                                              {0, 2, 4},
+                                                              {1, 2, 4},
+                                                              {0, 1, 5},
+                                                              {1, 2, 5},
+                                                              {2, 3, 6},
+                                                              {0, 4, 7},
+                                                              {2, 5, 8}}));
+    ASSERT_EQ(complex.sheets, 4);
+    const MedialComplex result = without_slivers(complex, 0.1);
+    ASSERT_NO_FATAL_FAILURE(expect_well_formed(result));
+    EXPECT_EQ(homology(result), homology(complex));
+    EXPECT_EQ(result.sheets, 3);
+}
+
 TEST(Contraction, BringsSeamsToTheBorderOfASheetThatIsFoldedAlongThem) {
     // A seam of three sheets, two of which go on around its end up to a vertex of the border.
     const auto star = [](double gap, double fold) {

@@ -58,6 +58,12 @@ bool has_room_for(double diameter, const MedialComplex& complex, std::span<const
     });
 }
 
+// What is smaller than the disc that sheets have room for is a crumb, whatever its radii: in an apex they are small.
+bool is_crumb(double area, double tolerance) {
+    const double room = kMostRoom * tolerance;
+    return room < kInfinity && area < 0.25 * std::numbers::pi * room * room;
+}
+
 // Crumbs, and sheets that are narrow in the mean, and wide nowhere: in a corner where bars meet is one that is three
 // times as wide in its middle as in the mean along its jagged outline. The smallest first, so that the numbers of
 // sheets do not matter.
@@ -88,11 +94,9 @@ std::vector<Sliver> slivers_of(const MedialComplex& complex, double tolerance) {
                 }
             }
         }
-        // What is smaller than such a disc is a crumb, whatever its radii: in an apex they are small.
-        const double room = kMostRoom * tolerance;
-        if (room < kInfinity && area < 0.25 * std::numbers::pi * room * room) {
+        if (is_crumb(area, tolerance)) {
             slivers.push_back({area, sheet, kMostWidth * tolerance});
-        } else if (2.0 * area < most && !has_room_for(room, complex, faces_of[sheet], outline)) {
+        } else if (2.0 * area < most && !has_room_for(kMostRoom * tolerance, complex, faces_of[sheet], outline)) {
             slivers.push_back({area, sheet, most / perimeter});
         }
     }
@@ -504,6 +508,19 @@ MedialComplex contracted(MedialComplex complex, const std::vector<Sliver>& slive
     return std::move(contraction).result();
 }
 
+// Contracts the edges of crumbs that are shorter than these may be wide.
+MedialComplex with_crumbs_contracted(MedialComplex complex, double tolerance) {
+    const std::vector<Sliver> slivers = slivers_of(complex, tolerance);
+    const IndexLists faces_of = faces_of_sheets(complex);
+    Contraction contraction(std::move(complex));
+    for (const Sliver& sliver : slivers) {
+        if (is_crumb(sliver.area, tolerance)) {
+            contraction.contract(faces_of[sliver.sheet], [&](Index, Index) { return sliver.width; });
+        }
+    }
+    return std::move(contraction).result();
+}
+
 // Halves the edges that lead away from slivers and cuts the faces there at their centers. Then no two vertices of a
 // sliver have a neighbor in common beside it, which would stand in the way of contractions.
 MedialComplex with_room_around(const std::vector<Sliver>& slivers, const MedialComplex& complex) {
@@ -617,7 +634,7 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
     if (slivers = slivers_of(complex, tolerance); slivers.empty()) {
         return complex;
     }
-    MedialComplex with_room = with_room_around(slivers, complex);
+    MedialComplex with_room = with_crumbs_contracted(with_room_around(slivers, complex), tolerance);
     with_room = without_flat_triangles(with_room, flat_triangles(with_room, slivers_of(with_room, tolerance)));
     return slivers_of(with_room, tolerance).size() < slivers.size() ? with_room : complex;
 }
