@@ -342,6 +342,9 @@ TEST(Contraction, BringsSeamsToTheBorderOfASheetThatIsFoldedAlongThem) {
     EXPECT_EQ(result.sheets, 3);
     EXPECT_EQ(with_seams_to_borders(star(0.2, 1.05), 0.1).sheets, 2) << "too far";
     EXPECT_EQ(with_seams_to_borders(star(0.05, 1.4), 0.1).sheets, 2) << "smooth";
+    const std::vector<double> reaches(complex.vertices.size(), 0.1);
+    EXPECT_EQ(with_seams_to_borders(star(0.05, 1.4), reaches, false).sheets, 2);
+    EXPECT_EQ(with_seams_to_borders(star(0.05, 1.4), reaches, true).sheets, 3) << "may be flat";
 }
 
 TEST(Contraction, LeavesSeamsWhereTheyAreWhenItDrawsAFlapIn) {

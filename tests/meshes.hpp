@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "scaleaxis/geometry.hpp"
+#include "surface/polygon_triangles.hpp"
 
 namespace scaleaxis::test {
 
@@ -146,33 +147,6 @@ inline TriangleMesh revolved_mesh(const std::vector<std::array<double, 2>>& poly
     return mesh;
 }
 
-/// Triangles of a polygon in the plane, counter-clockwise, by cutting off ears: a fan around its first corner if all of
-/// it can be seen from there.
-inline std::vector<std::array<Index, 3>> triangles_of(const std::vector<std::array<double, 2>>& polygon) {
-    const auto twice_area = [&](Index a, Index b, Index c) {
-        return (polygon[b][0] - polygon[a][0]) * (polygon[c][1] - polygon[a][1]) -
-               (polygon[b][1] - polygon[a][1]) * (polygon[c][0] - polygon[a][0]);
-    };
-    std::vector<Index> left(polygon.size());
-    std::iota(left.begin(), left.end(), 0);
-    std::vector<std::array<Index, 3>> triangles;
-    for (std::size_t i = 1; left.size() > 2 && i < left.size(); ++i) {
-        const Index a = left[i - 1];
-        const Index b = left[i];
-        const Index c = left[(i + 1) % left.size()];
-        const bool is_ear = twice_area(a, b, c) > 0.0 && std::ranges::none_of(left, [&](Index v) {
-                                return v != a && v != b && v != c && twice_area(a, b, v) >= 0.0 &&
-                                       twice_area(b, c, v) >= 0.0 && twice_area(c, a, v) >= 0.0;
-                            });
-        if (is_ear) {
-            triangles.push_back({a, b, c});
-            left.erase(left.begin() + static_cast<std::ptrdiff_t>(i));
-            i = 0;
-        }
-    }
-    return triangles;
-}
-
 /// A prism over a polygon in the plane, counter-clockwise.
 inline TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, double height) {
     TriangleMesh mesh;
@@ -187,7 +161,11 @@ inline TriangleMesh prism(const std::vector<std::array<double, 2>>& polygon, dou
         mesh.triangles.push_back({i, next, n + next});
         mesh.triangles.push_back({i, n + next, n + i});
     }
-    for (const auto& [a, b, c] : triangles_of(polygon)) {
+    std::vector<Index> cap(polygon.size());
+    std::iota(cap.begin(), cap.end(), 0);
+    std::vector<std::array<Index, 3>> triangles;
+    triangulate(mesh.vertices, cap, triangles);
+    for (const auto& [a, b, c] : triangles) {
         mesh.triangles.push_back({a, c, b});
         mesh.triangles.push_back({n + a, n + b, n + c});
     }

@@ -130,17 +130,21 @@ void remove_hairs(const MedialComplex& complex, std::span<const std::uint8_t> is
                   Remainder& remainder) {
     std::vector<Index> ends =
         indices_where(complex.vertices.size(), [&](Index v) { return remainder.only_bare_edge(v) != kNone; });
+    if (ends.empty()) {
+        return;
+    }
     std::ranges::stable_sort(ends, {}, [&](Index v) { return complex.radii[v]; });
     const std::vector<Index> curves = indices_where(complex.edges.size(), [&](Index e) {
         return remainder.has_edge[e] != 0 && remainder.faces_at_edge[e].count == 0;
     });
-    double reach = 0.0;
     const auto middles = each_of<Point>(curves, [&](Index e) {
-        const auto& [p, q] = complex.edges[e];
-        reach = std::max(reach, std::max(complex.radii[p], complex.radii[q]) / cosine +
-                                    0.5 * distance(complex.vertices[p], complex.vertices[q]));
-        return midpoint(complex.vertices[p], complex.vertices[q]);
+        return midpoint(complex.vertices[complex.edges[e][0]], complex.vertices[complex.edges[e][1]]);
     });
+    const double reach = std::ranges::max(each_of<double>(curves, [&](Index e) {
+        const auto& [p, q] = complex.edges[e];
+        return std::max(complex.radii[p], complex.radii[q]) / cosine +
+               0.5 * distance(complex.vertices[p], complex.vertices[q]);
+    }));
     const PointTree tree = build_point_tree(middles);
     for (const Index end : ends) {
         const Hair hair = hair_from(end, complex, remainder);
