@@ -19,6 +19,7 @@
 #include "base/disjoint_sets.hpp"
 #include "base/vectors.hpp"
 #include "complexes.hpp"
+#include "homology.hpp"
 #include "images.hpp"
 #include "meshes.hpp"
 #include "scaleaxis/balls.hpp"
@@ -224,6 +225,17 @@ TEST(SharpEdges, OfBarsPyramidsAndOctahedraGiveTheSameSheetsInAnyPosition) {
         EXPECT_EQ(axis_of(*mesh_solid(moved(pyramid, turned)), 1.1, 0.01).complex.sheets, 8);
         EXPECT_EQ(axis_of(*mesh_solid(moved(octahedron, turned)), 1.1, 0.01).complex.sheets, 12);
     }
+}
+
+TEST(SharpEdges, OfAPyramidLeaveNoCrumbThatFindsRoomLate) {
+    // Turned so that a crumb in its axis is still between common neighbors when others beside it have gone.
+    const TriangleMesh pyramid{{{-1.2884783349459006, -0.05179611731905309, -0.5806382200697009},
+                                {-0.17744999201027079, -1.306922019424722, 0.5103590260575013},
+                                {-0.6282268022550541, 0.6084966455724321, 1.3397996094750262},
+                                {1.2884783349459006, 0.05179611731905309, 0.5806382200697009},
+                                {0.17744999201027079, 1.306922019424722, -0.5103590260575013}},
+                               {{0, 1, 2}, {1, 3, 2}, {0, 2, 4}, {4, 2, 3}, {4, 3, 1}, {4, 1, 0}}};
+    EXPECT_EQ(axis_of(*mesh_solid(pyramid), 1.1, 0.01).complex.sheets, 8);
 }
 
 /// Faces that go around, with four corners in each row of vertices: between one row and the next.
@@ -758,6 +770,32 @@ TEST(SharpEdges, AreTheSameForAnyThreads) {
     const ScaleAxis one = scale_axis(*box, options, {.threads = 1});
     const ScaleAxis three = scale_axis(*box, options, {.threads = 3});
     EXPECT_TRUE(same_bytes(one.axes[0].complex, three.axes[0].complex));
+}
+
+TEST(SharpEdges, LeaveNothingOfASheetBesideTheirStrips) {
+    // A sheet below an edge of a cube that ends in teeth: the way is shorter below them than around them.
+    const std::unique_ptr<Solid> cube = mesh_solid(box_mesh({-5, -5, -5}, {5, 5, 5}));
+    constexpr Index kTeeth = 30;
+    const auto at_depth = [](double depth, double y) { return Point{5.0 - depth, y, 5.0 - depth}; };
+    std::vector<Point> vertices;
+    std::vector<std::vector<Index>> faces;
+    for (Index k = 0; k <= kTeeth; ++k) {
+        const double y = 0.2 * k - 3.0;
+        vertices.insert(vertices.end(), {at_depth(0.5, y), at_depth(0.4, y), at_depth(0.1, y + 0.1)});
+        if (k < kTeeth) {
+            const Index a = 3 * k;
+            faces.insert(faces.end(), {{a, a + 1, a + 4, a + 3}, {a + 1, a + 2, a + 4}});
+        }
+    }
+    vertices.pop_back();
+    const MedialComplex teeth = with_radii(complex_by_hand(vertices, faces), [](const Point& p) { return 5.0 - p.x; });
+    const SharpComplex result = extend_to_sharp_edges(teeth, *cube, {.tolerance = 0.1});
+    expect_consistent(result.complex);
+    EXPECT_GT(result.statistics.length, 9.0);
+    EXPECT_EQ(result.complex.sheets, 1);
+    EXPECT_EQ(homology(result.complex), homology(teeth));
+    // The quadrangles, one triangle for each step of the way, and one for each of the line.
+    EXPECT_NEAR(static_cast<double>(result.complex.faces.size()), 2 * kTeeth + 100, 10);
 }
 
 TEST(SharpEdges, BallsOfRadius0DoNotHinderWhatFollows) {

@@ -14,7 +14,7 @@ namespace scaleaxis::inline v1 {
 struct SharpEdgeOptions {
     /// Least angle, in degrees, (0, 180), between the normals on both sides of an edge that is sharp.
     double angle = 30.0;
-    /// Tolerance δ of the sampling, a length > 0: the complex must come as near to an edge as 8 δ.
+    /// Tolerance δ of the sampling, a length > 0: the complex must come as near to an edge as 12 δ.
     double tolerance = 0.0;
     /// Factor ≥ 1 by which the balls have been grown, of a complex that is not shrunk yet. Edges whose sheets growing
     /// takes, those of wide wedges, are left out.

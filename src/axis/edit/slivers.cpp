@@ -631,12 +631,18 @@ MedialComplex without_slivers(MedialComplex complex, double tolerance) {
         return complex;
     }
     complex = without_flat_triangles(complex, flat_triangles(complex, slivers));
-    if (slivers = slivers_of(complex, tolerance); slivers.empty()) {
-        return complex;
+    // Once others are gone there may be room where there was none.
+    for (slivers = slivers_of(complex, tolerance); !slivers.empty();) {
+        MedialComplex with_room = with_crumbs_contracted(with_room_around(slivers, complex), tolerance);
+        with_room = without_flat_triangles(with_room, flat_triangles(with_room, slivers_of(with_room, tolerance)));
+        std::vector<Sliver> left = slivers_of(with_room, tolerance);
+        if (left.size() >= slivers.size()) {
+            return complex;
+        }
+        complex = std::move(with_room);
+        slivers = std::move(left);
     }
-    MedialComplex with_room = with_crumbs_contracted(with_room_around(slivers, complex), tolerance);
-    with_room = without_flat_triangles(with_room, flat_triangles(with_room, slivers_of(with_room, tolerance)));
-    return slivers_of(with_room, tolerance).size() < slivers.size() ? with_room : complex;
+    return complex;
 }
 
 MedialComplex with_seams_to_borders(MedialComplex complex, double tolerance) {

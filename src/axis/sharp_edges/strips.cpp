@@ -18,6 +18,8 @@
 
 #include "axis/cheapest_ways.hpp"
 #include "axis/complex.hpp"
+#include "axis/edit/collapse.hpp"
+#include "axis/edit/remainder.hpp"
 #include "axis/sharp_edges/creases.hpp"
 #include "base/angles.hpp"
 #include "base/grouped.hpp"
@@ -26,15 +28,19 @@
 #include "base/vectors.hpp"
 #include "sampling/questions.hpp"
 #include "scaleaxis/sharp_edges.hpp"
+#include "spatial/nearest_triangle.hpp"
 #include "spatial/point_tree.hpp"
+#include "spatial/triangle_tree.hpp"
 
 namespace scaleaxis::inline v1 {
 namespace {
 
 // All lengths are in tolerances.
-constexpr double kInnerCost = 3.0;  // of a way inside a sheet, which leaves a part of it beyond, beside its border
-constexpr double kOffCost =
-    8.0;  // of a way off the bisector of the line, to other sheets, beside one away from the line
+// Of a way off the bisector of the line, to other sheets, beside one away from the line.
+constexpr double kOffCost = 8.0;
+// How far from its line a way may lead: narrow sheets end up to ten before corners. Two thirds of it leave edges of
+// frustums out; twice of it brings sheets back that the filter has taken.
+constexpr double kWayReach = 12.0;
 constexpr double kFootReach = 2.0;  // of the way to the nearest vertex: how far the foot of a corner may be
 constexpr int kPartsOfLoop = 3;     // the shortest way below a third of a loop does not lead around the other side
 
@@ -66,6 +72,43 @@ void for_each_run(const std::vector<std::uint8_t>& values, const Visit& visit) {
     }
 }
 
+// A complex with strips, the first of whose faces and vertices are those given. Parts of sheets beyond the ways lie
+// beside strips, which stand for them: these parts collapse from their border.
+MedialComplex without_doubles(const MedialComplex& complex, std::size_t given_faces, Index given_vertices,
+                              double tolerance) {
+    TriangleMesh strips{complex.vertices, {}};
+    for (std::size_t f = given_faces; f < complex.faces.size(); ++f) {
+        const std::span<const Index> corners = complex.faces[f];
+        strips.triangles.push_back({corners[0], corners[1], corners[2]});
+    }
+    const Bvh tree = build_bvh(std::move(strips));
+    const TriangleBounds bounds = triangle_bounds(tree);
+    const auto is_double = [&](const ElementaryCollapse& collapse) {
+        if (!collapse.has_face || static_cast<std::size_t>(collapse.element) >= given_faces) {
+            return false;
+        }
+        const Point center = center_of_face(complex, collapse.element);
+        const NearTriangle near = nearest_triangle(tree, bounds, center, 0.5 * tolerance);
+        if (near.triangle == kNone) {
+            return false;
+        }
+        std::vector<Point> feet;
+        for (const Index v : complex.faces[given_faces + tree.order[near.triangle]]) {
+            if (v < given_vertices) {
+                feet.push_back(complex.vertices[v]);
+            }
+        }
+        // What lies below a way is as near to it as to the strip.
+        const Point on_way = nearest_point(feet.front(), feet.back(), feet.back(), center);
+        return near.squared_distance < kNearby * kNearby * squared_distance(on_way, center);
+    };
+    Remainder rest(complex);
+    Collapses collapses(complex, rest, is_double, [](const ElementaryCollapse&, bool) {});
+    collapses.add_all();
+    collapses.run();
+    return complex_of(rest, complex);
+}
+
 class Strips {
    public:
     Strips(MedialComplex& complex, const Solid& solid, const SharpEdgeOptions& options, SharpEdgeStatistics& statistics)
@@ -75,25 +118,20 @@ class Strips {
           statistics_(statistics),
           curves_(curve_edges(complex)),
           neighbors_(grouped_both_ways(complex.vertices.size(), complex.edges)),
-          tree_(build_point_tree(complex.vertices)) {
-        const IndexLists faces_at = faces_at_edges(complex);
-        for (std::size_t e = 0; e < complex.edges.size(); ++e) {
-            if (faces_at[e].size() == 1) {
-                border_.emplace(complex.edges[e], faces_at[e][0]);
-            }
-        }
-    }
+          tree_(build_point_tree(complex.vertices)) {}
 
     void run(std::span<const EdgeLine> lines) {
         std::vector<EdgeLine> parts = parts_of(lines);
         std::ranges::stable_sort(parts, std::greater<>(), &EdgeLine::length);
         const std::size_t faces = complex_.faces.size();
+        const auto vertices = static_cast<Index>(complex_.vertices.size());
         // A corner that is reached may be where another line can begin.
         while (std::erase_if(parts, [&](const EdgeLine& part) { return reach(part); }) > 0) {
             // once more
         }
         if (complex_.faces.size() > faces) {
             build_edges(complex_, curves_);
+            complex_ = without_doubles(complex_, faces, vertices, tolerance_);
             label_sheets(complex_);
         }
     }
@@ -190,27 +228,10 @@ class Strips {
         return {place, position, distance(p, place), nearer, farther};
     }
 
-    // Of a step along an edge of the complex, below a place on the line. An edge of one face is the near border of a
-    // sheet unless that face lies towards the place: the strip would fold over it.
-    double cost_of_side(const std::array<Index, 2>& edge, const Point& place) const {
-        const auto face = border_.find(edge);
-        if (face == border_.end()) {
-            return kInnerCost;
-        }
-        const Point& from = complex_.vertices[edge[0]];
-        const Point along = complex_.vertices[edge[1]] - from;
-        const auto across = [&](const Point& to) { return cross(cross(along, to - from), along); };
-        const Point inward = across(center_of_face(complex_, face->second));
-        const Point outward = across(place);
-        const double size = norm(inward) * norm(outward);
-        return size > 0.0 ? 1.0 + (kInnerCost - 1.0) * std::max(0.0, dot(inward, outward) / size) : 1.0;
-    }
-
-    // Through the complex, along the line, from a foot of the one end to one of the other; along the border rather than
-    // across sheets.
+    // Through the complex, along the line, from a foot of the one end to one of the other.
     std::vector<Index> way_below(const EdgeLine& line) const {
         const std::vector<Index> goals = feet_of(line.ends[1], line.points.back());
-        const double reach = kCreaseReach * tolerance_;
+        const double reach = kWayReach * tolerance_;
         std::unordered_map<Index, View> views;  // a step leads to a vertex from all sides
         const auto view_of = [&](Index v) -> const View& {
             const auto [view, is_new] = views.try_emplace(v);
@@ -224,10 +245,9 @@ class Strips {
             // A step across the middle of a loop would cut it short.
             const double step = std::max(distance(complex_.vertices[v], complex_.vertices[next]),
                                          std::abs(view.position - view_of(v).position));
-            const double factor = cost_of_side({std::min(v, next), std::max(v, next)}, view.place);
             return std::max(view.away, view_of(v).away) > reach
                        ? kInfinity
-                       : factor * step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
+                       : step * (1.0 + (view.away + kOffCost * (view.farther - view.nearer)) / tolerance_);
         };
         const auto is_foot = [&](Index v) { return std::ranges::binary_search(goals, v); };
         const CheapestWays ways(neighbors_, feet_of(line.ends[0], line.points.front()), is_foot, cost);
@@ -357,10 +377,9 @@ class Strips {
     SharpEdgeStatistics& statistics_;
     std::vector<std::array<Index, 2>> curves_;
     IndexLists neighbors_;
-    PointTree tree_;                                // of the vertices as given
-    std::map<std::array<Index, 2>, Index> border_;  // edges of one face, as given, and that face
-    std::map<Index, Corner> corners_;               // by the numbers of ends
-    Index first_cut_ = 0;                           // the least number of an end that is no corner
+    PointTree tree_;                   // of the vertices as given
+    std::map<Index, Corner> corners_;  // by the numbers of ends
+    Index first_cut_ = 0;              // the least number of an end that is no corner
 };
 
 }  // namespace
