@@ -331,7 +331,7 @@ class Contraction {
     // An edge becomes a point, and triangles at it become edges: the homotopy type stays if nothing else meets itself,
     // and what is left is still a complex. Sheets still end on the sharp edges of the solid.
     bool may_contract(Index p, Index q) const {
-        if (is_on_sharp_edge(complex_, p) != is_on_sharp_edge(complex_, q)) {
+        if (is_on_sharp_edge(complex_, p) || is_on_sharp_edge(complex_, q)) {
             return false;
         }
         std::vector<std::vector<Index>> cells;  // what the others become
