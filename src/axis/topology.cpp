@@ -23,13 +23,7 @@ constexpr std::size_t kMaxElimination = 3000;
 
 // What is left of a complex without its free faces. Without a face left there is no void.
 Remainder without_free_faces(const MedialComplex& complex) {
-    Remainder left(complex);
-    Collapses collapses(
-        complex, left, [](const ElementaryCollapse& collapse) { return collapse.has_face; },
-        [](const ElementaryCollapse&, bool) {});
-    collapses.add_all();
-    collapses.run();
-    return left;
+    return after_collapses(complex, [](const ElementaryCollapse& collapse) { return collapse.has_face; });
 }
 
 std::vector<Index> faces_of(const Remainder& left) {

@@ -450,15 +450,11 @@ MedialComplex without_flaps(const MedialComplex& walls) {
         areas[sheet] += face_area(walls, f);
         radii[sheet] = std::max(radii[sheet], mean_ball(walls, walls.faces[f]).radius);
     }
-    Remainder rest(walls);
     const auto is_flap = [&](const ElementaryCollapse& collapse) {
         const Index sheet = collapse.has_face ? walls.face_sheets[collapse.element] : kNone;
         return sheet == kNone || std::sqrt(areas[sheet]) < kNearby * radii[sheet];
     };
-    Collapses collapses(walls, rest, is_flap, [](const ElementaryCollapse&, bool) {});
-    collapses.add_all();
-    collapses.run();
-    return part(walls, rest.has_face);
+    return part(walls, after_collapses(walls, is_flap).has_face);
 }
 
 // The walls of a complex, with whole seams.

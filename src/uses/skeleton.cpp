@@ -91,15 +91,9 @@ Burnt burnt_sheets(const MedialComplex& given) {
 
 // Collapses faces from free edges, those that burn first first. All vertices stay, as parts of trees.
 Remainder collapsed_faces(const Burnt& burnt) {
-    const MedialComplex& complex = burnt.complex;
-    const auto order = [&](const ElementaryCollapse& collapse) {
+    return after_collapses(burnt.complex, [&](const ElementaryCollapse& collapse) {
         return collapse.has_face ? std::optional(burnt.edge_times[collapse.free]) : std::nullopt;
-    };
-    Remainder remainder(complex);
-    Collapses collapses(complex, remainder, order, [](const ElementaryCollapse&, const std::optional<double>&) {});
-    collapses.add_all();
-    collapses.run();
-    return remainder;
+    });
 }
 
 // What of the curves stays, and where the rest has shrunk to.

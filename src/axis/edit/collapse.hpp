@@ -142,4 +142,15 @@ class Collapses {
     CancellationPoint stop_if_cancelled_now_and_then_;
 };
 
+/// What is left of a complex after all collapses that `key_of` allows, as of `Collapses`.
+template <class KeyOf>
+Remainder after_collapses(const MedialComplex& complex, KeyOf key_of) {
+    using Key = std::invoke_result_t<KeyOf&, const ElementaryCollapse&>;
+    Remainder remainder(complex);
+    Collapses collapses(complex, remainder, std::move(key_of), [](const ElementaryCollapse&, const Key&) {});
+    collapses.add_all();
+    collapses.run();
+    return remainder;
+}
+
 }  // namespace scaleaxis::inline v1

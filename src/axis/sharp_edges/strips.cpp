@@ -39,7 +39,7 @@ namespace {
 // Of a way off the bisector of the line, to other sheets, beside one away from the line.
 constexpr double kOffCost = 8.0;
 // How far from its line a way may lead: narrow sheets end up to ten before corners. Two thirds of it leave edges of
-// frustums out; twice of it brings sheets back that the filter has taken.
+// frustums out; without a limit sheets come back that the filter has taken.
 constexpr double kWayReach = 12.0;
 constexpr double kFootReach = 2.0;  // of the way to the nearest vertex: how far the foot of a corner may be
 constexpr int kPartsOfLoop = 3;     // the shortest way below a third of a loop does not lead around the other side
@@ -102,11 +102,7 @@ MedialComplex without_doubles(const MedialComplex& complex, std::size_t given_fa
         const Point on_way = nearest_point(feet.front(), feet.back(), feet.back(), center);
         return near.squared_distance < kNearby * kNearby * squared_distance(on_way, center);
     };
-    Remainder rest(complex);
-    Collapses collapses(complex, rest, is_double, [](const ElementaryCollapse&, bool) {});
-    collapses.add_all();
-    collapses.run();
-    return complex_of(rest, complex);
+    return complex_of(after_collapses(complex, is_double), complex);
 }
 
 class Strips {
