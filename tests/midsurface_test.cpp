@@ -325,6 +325,24 @@ TEST(Midsurface, OfATubeIsACylinder) {
     }
 }
 
+// Sheets into its edges of 60° are no walls. From the inner corner to the bisector of the outer one a sheet follows a
+// parabola.
+TEST(Midsurface, OfATriangularTubeIsItsThreeWalls) {
+    const double arc = 0.908;
+    const double wall = 2.5 * 2.0 * std::numbers::sqrt3 + 2.0 * arc;
+    const TriangleMesh tube = revolved_mesh({{5, -12}, {8, -12}, {8, 12}, {5, 12}}, 3, 24.0);
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Random random(seed);
+        const Midsurface surface = midsurface_of(test::moved(tube, test::random_turn(random))).surface;
+        expect_whole(surface);
+        EXPECT_EQ(surface.sheets.size(), 1U);
+        EXPECT_EQ(surface.seams, 0);
+        EXPECT_NEAR(area(surface), 3.0 * wall * 24.0, 0.01 * 754.0);
+        EXPECT_GT(surface.sheets[0].min, 0.95 * 1.5);
+    }
+}
+
 TEST(Midsurface, IsEmptyWhereThereAreNoWalls) {
     const Midsurface ball = midsurface_of(sphere_mesh({0, 0, 0}, 1, 3), 0.03).surface;
     EXPECT_TRUE(ball.mesh.triangles.empty());

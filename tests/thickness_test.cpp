@@ -243,10 +243,10 @@ TEST(Thickness, OfAPartIsNowhereLessThanThatOfItsThinnestWall) {
     }
 }
 
-// Out of a corner of three faces a ball grows by 0.5 of the way if the edge between two of them has 70.5°: by 0.502 at
-// 71°, by 0.577 at 90°.
+// Out of a corner of three faces a ball grows by 0.447 of the way if the edge between two of them has 60°, by 0.577 at
+// 90°: by more than the 0.438 of contacts 128° apart.
 TEST(Thickness, OfAPlateIsThatOfItsFacesAlsoInAcuteCorners) {
-    for (const double degrees : {71.0, 72.0, 75.0, 80.0}) {
+    for (const double degrees : {60.0, 65.0, 71.0, 72.0, 75.0, 80.0}) {
         SCOPED_TRACE(degrees);
         const double x = 15.0 * std::cos(degrees * std::numbers::pi / 180.0);
         const double y = 15.0 * std::sin(degrees * std::numbers::pi / 180.0);

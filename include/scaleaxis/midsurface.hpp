@@ -17,7 +17,7 @@ namespace scaleaxis::inline v1 {
 struct MidsurfaceOptions {
     /// Least object angle of a face, in degrees, (0, 90], from which on it stands for what is between two sides: half
     /// the angle between its contacts, seen from it. Faces that run into convex edges at 90 degrees have 45.
-    double angle = 60.0;
+    double angle = 64.0;
     /// Whether the surface goes on from its border to the surface of the solid, as from the middle of a plate to its
     /// rim. Else it ends where a ball touches the rim, half the thickness before it.
     bool extends = true;

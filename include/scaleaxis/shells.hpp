@@ -18,7 +18,7 @@ namespace scaleaxis::inline v1 {
 struct ShellOptions {
     double size = 0.0;  ///< > 0: length of the edges, in units of the axis
     /// Least object angle of what counts as a wall, as `MidsurfaceOptions::angle`.
-    double angle = 60.0;
+    double angle = 64.0;
 };
 
 /// A conforming mesh of triangles: where walls meet, they share vertices. A *sheet* is a smooth part of it, between

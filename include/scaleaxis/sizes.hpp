@@ -36,7 +36,7 @@ struct SizeOptions {
     /// Largest difference of sizes for each unit of distance, [0.01, 10]. 0.3: from one element to the next they grow
     /// by a third, about.
     double gradation = 0.3;
-    double angle = 120.0;  ///< as `WallOptions::angle`
+    double angle = 128.0;  ///< as `WallOptions::angle`
 };
 
 /// Tetrahedra with sizes at their vertices, between which they are linear.

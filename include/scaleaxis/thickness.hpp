@@ -26,8 +26,9 @@ class ThicknessData;  // not public
 struct ThicknessOptions {
     /// Angle, in degrees, [0, 180), between two of the contacts of a ball, as seen from its centre, from which on it
     /// stands for what is between two sides of the solid. Balls below it lie in edges: at 90 degrees between two faces
-    /// they touch both at 90 degrees. Such edges do not read as thin. 0: all balls stand for it.
-    double angle = 120.0;
+    /// they touch both at 90 degrees. Such edges do not read as thin, by default those of
+    /// 52 degrees or more. 0: all balls stand for it.
+    double angle = 128.0;
 };
 
 /// The thickness at a point, in units of the complex; 0 where no ball of positive radius is.

@@ -24,7 +24,7 @@ struct WallOptions {
     std::optional<double> min_gap = std::nullopt;   ///< > 0: narrower gaps outside the solid are
     /// Angle, in degrees, [60, 179], between two of the contacts of a ball, as seen from its centre, from which on they
     /// lie on opposite sides: an edge of less than 180 degrees minus this is a thin wall, a groove as sharp a gap.
-    double angle = 120.0;
+    double angle = 128.0;
     /// Longest edge between places where the surface is looked at, in diagonals of the bounding box, (0, 1].
     double edge = 0.03;
 };
@@ -78,11 +78,11 @@ struct WallAt {
 
 /// The wall of a solid at points on its surface or in it, without a limit. \param angle see `WallOptions::angle`
 /// \throws InvalidOption, UnusableInput as above, Cancelled
-SCALEAXIS_EXPORT std::vector<WallAt> wall_at(const Solid& solid, std::span<const Point> points, double angle = 120.0,
+SCALEAXIS_EXPORT std::vector<WallAt> wall_at(const Solid& solid, std::span<const Point> points, double angle = 128.0,
                                              const Execution& execution = {});
 
 /// The gap at points of its surface or outside; infinity where a ball as large as the solid fits.
-SCALEAXIS_EXPORT std::vector<WallAt> gap_at(const Solid& solid, std::span<const Point> points, double angle = 120.0,
+SCALEAXIS_EXPORT std::vector<WallAt> gap_at(const Solid& solid, std::span<const Point> points, double angle = 128.0,
                                             const Execution& execution = {});
 
 }  // namespace scaleaxis::inline v1

@@ -117,7 +117,7 @@ def walls(
     min_wall: float | None = None,
     min_gap: float | None = None,
     max_wall: float | None = None,
-    angle: float = 120.0,
+    angle: float = 128.0,
     edge: float = 0.03,
     delta: float = 0.01,
     threads: int = 0,
@@ -165,7 +165,7 @@ def _opposite_at(solid: Any, points: npt.ArrayLike, is_gap: bool, angle: float, 
 
 
 @checked
-def thickness_at(solid: Any, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Floats:
+def thickness_at(solid: Any, points: npt.ArrayLike, *, angle: float = 128.0, threads: int = 0) -> Floats:
     """The thickness of the wall at N × 3 points on the surface of a solid or in it.
 
     solid: anything that `axis` takes, or the `Solid` or `LoadedSolid` made of it, which is quicker for several calls.
@@ -175,6 +175,6 @@ def thickness_at(solid: Any, points: npt.ArrayLike, *, angle: float = 120.0, thr
 
 
 @checked
-def gap_at(solid: Any, points: npt.ArrayLike, *, angle: float = 120.0, threads: int = 0) -> Floats:
+def gap_at(solid: Any, points: npt.ArrayLike, *, angle: float = 128.0, threads: int = 0) -> Floats:
     """The width of the gap at N × 3 points on the surface of a solid or outside; infinity where nothing is opposite."""
     return _opposite_at(solid, points, True, angle, threads)

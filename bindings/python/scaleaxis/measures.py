@@ -86,7 +86,7 @@ def thickness(
     axis: Any,
     points: Any = None,
     *,
-    angle: float = 120.0,
+    angle: float = 128.0,
     edge: Share = 0.01,
     threads: int = 0,
     progress: Progress = None,
@@ -120,7 +120,7 @@ def thickness(
 
 @checked
 def thickness_image(
-    axis: Any, mask: Any, *, angle: float = 120.0, threads: int = 0, progress: Progress = None
+    axis: Any, mask: Any, *, angle: float = 128.0, threads: int = 0, progress: Progress = None
 ) -> Image:
     """Local thickness at the points of a grid.
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 def midsurface(
     solid: Any,
     *,
-    angle: float = 60.0,
+    angle: float = 64.0,
     extend: bool = True,
     delta: float | Literal["auto"] | None = None,
     scale: float | None = None,

@@ -36,7 +36,7 @@ class ScaleAxisAccessor:
         """
         return curves.skeleton(self._dataset, **options).to_pyvista()
 
-    def thickness(self, *, angle: float = 120.0, edge: float = 0.01, **options: Any) -> pyvista.PolyData:
+    def thickness(self, *, angle: float = 128.0, edge: float = 0.01, **options: Any) -> pyvista.PolyData:
         """The surface of the solid in triangles, with its "thickness" and its "foot_thickness" at points.
 
         angle, edge: of `scaleaxis.thickness`.

@@ -161,7 +161,7 @@ class Axis:
         self,
         points: Any = None,
         *,
-        angle: float = 120.0,
+        angle: float = 128.0,
         edge: float = 0.01,
         threads: int = 0,
         progress: Progress = None,
@@ -235,7 +235,7 @@ class Axis:
 
     @checked
     def midsurface(
-        self, *, angle: float = 60.0, extend: bool = True, threads: int = 0, progress: Progress = None
+        self, *, angle: float = 64.0, extend: bool = True, threads: int = 0, progress: Progress = None
     ) -> Midsurface:
         """What of the axis lies between opposite sides of walls: see `scaleaxis.midsurface`."""
         with telling(progress) as tell:
@@ -515,7 +515,7 @@ class Skeleton:
         faces: npt.ArrayLike | None = None,
         pieces: Literal["whole", "components", "parts"] = "whole",
         *,
-        angle: float = 120.0,
+        angle: float = 128.0,
         threads: int = 0,
         progress: Progress = None,
     ) -> list[dict[str, Any]]:

@@ -91,7 +91,7 @@ def size_field(
     max_size: float | None = None,
     gradation: float = 0.3,
     of: Literal["thickness", "feature-size"] = "thickness",
-    angle: float = 120.0,
+    angle: float = 128.0,
     delta: float = 0.01,
     threads: int = 0,
     progress: Progress = None,
