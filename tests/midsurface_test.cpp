@@ -325,6 +325,31 @@ TEST(Midsurface, OfATubeIsACylinder) {
     }
 }
 
+// Round notches leave it a neck as wide as it is thick, where no sheet lies between its sides. The end beyond the neck
+// has a long border, and the borders on both sides of the neck go on towards each other.
+TEST(Midsurface, OfAPlateWithANeckHasBothEnds) {
+    constexpr double kNotch = 3.5;
+    std::vector<std::array<double, 2>> outline{{-20, -5}, {20, -5}, {20, 5}, {-20, 5}};
+    for (const std::size_t side : {3U, 1U}) {  // the later one first
+        std::vector<std::array<double, 2>> notch;
+        for (int k = 0; k <= 32; ++k) {
+            const double angle = std::numbers::pi * k / 32.0;
+            const double turn = side == 1 ? 1.0 : -1.0;
+            notch.push_back({13.0 - turn * kNotch * std::cos(angle), turn * (kNotch * std::sin(angle) - 5.0)});
+        }
+        outline.insert(outline.begin() + static_cast<std::ptrdiff_t>(side), notch.begin(), notch.end());
+    }
+    for (unsigned seed = 1; seed <= 3; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        test::Random random(seed);
+        const TriangleMesh plate = test::moved(test::prism(outline, 3.0), test::random_turn(random));
+        const Midsurface surface = midsurface_of(plate).surface;
+        expect_whole(surface);
+        EXPECT_EQ(surface.seams, 0);
+        EXPECT_NEAR(area(surface), 400.0 - std::numbers::pi * kNotch * kNotch, 0.02 * 361.5);
+    }
+}
+
 // Sheets into its edges of 60° are no walls. From the inner corner to the bisector of the outer one a sheet follows a
 // parabola.
 TEST(Midsurface, OfATriangularTubeIsItsThreeWalls) {

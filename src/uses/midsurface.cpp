@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <queue>
@@ -33,6 +34,7 @@
 #include "solid/mesh/repair/orientation.hpp"
 #include "solid/mesh/triangle_edges.hpp"
 #include "spatial/mesh_parts.hpp"
+#include "spatial/point_tree.hpp"
 #include "uses/ascent.hpp"
 #include "uses/boundary_ahead.hpp"
 #include "uses/uphill.hpp"
@@ -112,11 +114,12 @@ Flags in_wide_parts(const MedialComplex& complex, const Flags& faces) {
     const IndexLists faces_at = faces_at_edges(complex);
     const SurfaceParts found = parts_of_faces(
         faces, [&](Index f) { return face_area(complex, f); },
-        [&](Index f) { return mean_ball(complex, complex.faces[f]).radius; },
+        [&](Index f) { return mean_ball(complex, complex.faces[f]); },
         [&](Index f, const auto& use) {
             for (const Index e : complex.face_edges[f]) {
                 const std::span<const Index> at = faces_at[e];
-                use(at.size() == 2 ? at[at[0] == f ? 1 : 0] : kNone, length_of(complex, e));
+                const auto& [from, to] = complex.edges[e];
+                use(at.size() == 2 ? at[at[0] == f ? 1 : 0] : kNone, complex.vertices[from], complex.vertices[to]);
             }
         });
     Flags keeps(complex.faces.size());
@@ -332,21 +335,84 @@ class SideDirections {
     std::vector<std::vector<Index>> at_;
 };
 
+// Where sheets touch in a vertex alone, each gets its own: otherwise all go on to the same place, and meet in a seam
+// there.
+MedialComplex with_sheets_apart(const MedialComplex& walls) {
+    const IndexLists faces_at = faces_at_vertices(walls);
+    MedialComplex result = vertices_of(walls);
+    std::vector<std::vector<Index>> faces(walls.faces.size());
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        faces[f].assign(walls.faces[f].begin(), walls.faces[f].end());
+    }
+    for (Index v = 0; v < static_cast<Index>(walls.vertices.size()); ++v) {
+        const std::span<const Index> at = faces_at[v];
+        std::map<Index, Index> first_at;  // of the edges at the vertex, the first face
+        DisjointSets fans(at.size());
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            for (const Index e : walls.face_edges[at[i]]) {
+                if (walls.edges[e][0] == v || walls.edges[e][1] == v) {
+                    fans.join(first_at.try_emplace(e, static_cast<Index>(i)).first->second, static_cast<Index>(i));
+                }
+            }
+        }
+        std::map<Index, Index> vertex_of;  // of fans
+        for (std::size_t i = 0; i < at.size(); ++i) {
+            const auto [entry, is_new] = vertex_of.try_emplace(fans.find(static_cast<Index>(i)), v);
+            if (is_new && i > 0) {
+                entry->second = add_vertex(result, ball_at(walls, v), walls.vertex_origins[v]);
+            }
+            std::ranges::replace(faces[at[i]], v, entry->second);
+        }
+    }
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+        add_face(result, faces[f], values_of(walls, static_cast<Index>(f)));
+    }
+    build_edges(result, {});
+    return result;
+}
+
+// How far a border may go on before it is nearer to one that comes towards it: across a neck narrower than the wall is
+// thick, which has no sheet between its sides. There two borders meet halfway.
+double way_to_opposite_border(Index v, std::span<const Point> directions, std::span<const Point> places,
+                              const PointTree& border, std::span<const Index> at, double way) {
+    double result = way;
+    for_each_point_near(border, places[v], 2.0 * way, [&](Index position, double squared) {
+        const Index w = at[border.order[position]];
+        const double ahead = dot(directions[v], places[w] - places[v]);
+        if (ahead > 0.0 && dot(directions[v], directions[w]) < 0.0) {
+            result = std::min(result, 0.5 * squared / ahead);
+        }
+    });
+    return result;
+}
+
 // Strips of triangles from the border to the boundary of the solid.
 void extend(Midsurface& surface, const MedialComplex& complex, const DistanceInside& distance) {
     const std::vector<BorderEdge> border = border_of(complex);
-    const SideDirections directions(complex, border);
+    if (border.empty()) {
+        return;
+    }
+    const SideDirections sides(complex, border);
+    std::vector<Index> at;
+    for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
+        if (sides.is_border(v) && complex.radii[v] > 0.0) {
+            at.push_back(v);
+        }
+    }
+    std::vector<Point> directions(complex.vertices.size());
+    for_each_index(
+        at.size(), [&](std::size_t i) { directions[at[i]] = sides.of(at[i]); }, std::size_t{16});
+    const PointTree tree = build_point_tree(each_of<Point>(at, [&](Index v) { return complex.vertices[v]; }));
     std::vector<Point> ends(complex.vertices);
     for_each_index(
-        complex.vertices.size(),
-        [&](std::size_t v) {
-            if (!directions.is_border(static_cast<Index>(v)) || complex.radii[v] <= 0.0) {
-                return;
-            }
-            const Point direction = directions.of(static_cast<Index>(v));
-            if (direction != Point()) {
-                const auto way = way_to_boundary(ends[v], direction, complex.radii[v], distance);
-                ends[v] = ends[v] + std::max(way.value_or(0.0), 0.0) * direction;
+        at.size(),
+        [&](std::size_t i) {
+            const Index v = at[i];
+            if (directions[v] != Point()) {
+                const double way = way_to_boundary(ends[v], directions[v], complex.radii[v], distance).value_or(0.0);
+                ends[v] =
+                    ends[v] + way_to_opposite_border(v, directions, complex.vertices, tree, at, std::max(way, 0.0)) *
+                                  directions[v];
             }
         },
         std::size_t{16});
@@ -477,6 +543,9 @@ Midsurface midsurface_of(const MedialComplex& complex, const Solid* solid, const
     MedialComplex walls = walls_of(complex, cores);
     if (solid != nullptr) {
         walls = without_slopes(std::move(walls), options.angle, *solid);
+    }
+    if (options.extends) {
+        walls = with_sheets_apart(walls);
     }
     report(execution, kMidsurfaceStage, 0.2);
     Midsurface surface;

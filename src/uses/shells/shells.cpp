@@ -117,13 +117,14 @@ std::vector<Index> parts_in(const Midsurface& surface, const Neighbourhood& neig
     const TriangleMesh& mesh = surface.mesh;
     SurfaceParts found = parts_of_faces(
         counts, [&](Index t) { return triangle_area(mesh, mesh.triangles[t]); },
-        [&](Index t) { return 0.5 * thickness_of(surface, t); },
+        [&](Index t) {
+            return Ball{centroid_of(mesh, t), 0.5 * thickness_of(surface, t)};
+        },
         [&](Index t, const auto& use) {
             for (Index k = 0; k < 3; ++k) {
                 const Index side = neighbours.opposites[3 * t + k];
                 const std::array<Index, 3>& corners = mesh.triangles[t];
-                use(side == kNone ? kNone : side / 3,
-                    distance(mesh.vertices[corners[k]], mesh.vertices[corners[(k + 1) % 3]]));
+                use(side == kNone ? kNone : side / 3, mesh.vertices[corners[k]], mesh.vertices[corners[(k + 1) % 3]]);
             }
         });
     for (Index& part : found.numbers) {
