@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis info: what is in a file.
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "commands.hpp"
 #include "documents.hpp"
@@ -121,6 +125,9 @@ Description described_mesh(const fs::path& file, const InfoOptions& options, con
     std::ostringstream text;
     print_solid(text, report.fault, topology);
     description.text = objects.text + description.text + text.str();
+    std::vector<Diagnostic> warnings = read.warnings;
+    std::ranges::copy(report.warnings(), std::back_inserter(warnings));
+    description.json["warnings"] = json_of(std::span<const Diagnostic>(warnings));
     description.json["objects"] = objects.json;
     description.json["solid"] = json_of(topology);
     return description;

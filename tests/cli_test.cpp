@@ -2596,9 +2596,20 @@ TEST_F(CommandLine, InfoDescribesAMesh) {
     EXPECT_TRUE(document["mesh"]["fault"].is_null());
 }
 
+TEST_F(CommandLine, InfoTellsWarningsInJsonToo) {
+    ASSERT_EQ(run({"info", "box.off", "--repaired", "box.stl"}).status, 0);
+    write(folder_ / "tail.stl", content(folder_ / "box.stl") + "fourteen bytes");
+    const Json warnings = Json::parse(run({"info", "tail.stl", "--json"}).out)["mesh"]["warnings"];
+    ASSERT_EQ(warnings.size(), 1U);
+    EXPECT_TRUE(contains(warnings[0]["message"], "14 bytes"));
+    EXPECT_TRUE(contains(run({"info", "tail.stl"}).out, "14 bytes"));
+    EXPECT_EQ(Json::parse(run({"info", "box.off", "--json"}).out)["mesh"]["warnings"], Json::array());
+}
+
 TEST_F(CommandLine, InfoNamesTheHolesOfAMesh) {
     write(folder_ / "open.off", box_off(0, 0, 0, 1, 11));
     const Json document = Json::parse(run({"info", "open.off", "--json"}).out);
+    EXPECT_EQ(document["mesh"]["warnings"][0]["code"], "mesh.holes");
     EXPECT_EQ(document["mesh"]["boundary_edges"], 3);
     EXPECT_TRUE(document["mesh"]["fault"].is_null());
     ASSERT_EQ(document["mesh"]["holes"].size(), 1u);

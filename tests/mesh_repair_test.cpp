@@ -17,6 +17,7 @@
 #include "meshes.hpp"
 #include "scaleaxis/mesh.hpp"
 #include "scaleaxis/solid.hpp"
+#include "solids.hpp"
 
 namespace scaleaxis {
 namespace {
@@ -440,6 +441,32 @@ TEST(MeshRepair, KeepsACavityAndWhatLiesInIt) {
     }
 }
 
+TEST(MeshRepair, KeepsCavitiesThatTouchOthersOrTheBoundary) {
+    const TriangleMesh body = box({0, 0, 0}, {6, 6, 6});
+    const std::vector<std::pair<std::string, std::vector<TriangleMesh>>> cases{
+        {"beside each other", {box({1, 1, 1}, {2, 2, 2}), box({2, 1.2, 1.3}, {3, 2.2, 2.3})}},
+        {"through each other", {box({1, 1, 1}, {3, 3, 3}), box({2, 2, 2}, {4, 4, 4})}},
+        {"a pocket", {box({1, 1, 4}, {2, 2, 6})}},
+        {"a corner", {box({0, 0, 0}, {2, 3, 4})}},
+        {"a hole through", {box({2, 2, 0}, {3, 3, 6})}},
+    };
+    for (const auto& [name, cavities] : cases) {
+        for (const bool is_inside_out : {false, true}) {
+            SCOPED_TRACE(name + (is_inside_out ? ", all inside out" : ""));
+            TriangleMesh mesh = body;
+            double volume = 216.0;
+            for (const TriangleMesh& cavity : cavities) {
+                mesh = together({mesh, inside_out(cavity)});
+                const Point size = cavity.vertices[7] - cavity.vertices[0];
+                volume -= size.x * size.y * size.z;
+            }
+            const RepairedMesh result = repaired(is_inside_out ? inside_out(mesh) : mesh);
+            EXPECT_EQ(result.report.reversed_components, is_inside_out ? std::ssize(cavities) + 1 : 0);
+            EXPECT_NEAR(result.report.volume, volume, 1e-9);
+        }
+    }
+}
+
 TEST(MeshRepair, TurnsABodyInACavityOutward) {
     const RepairedMesh result = repaired(together({cube(3.0), inside_out(cube(2.0)), inside_out(cube(1.0))}));
     EXPECT_EQ(result.report.reversed_components, 1);
@@ -601,6 +628,89 @@ TEST(MeshClosing, LeavesWallsOut) {
         EXPECT_EQ(result.report.components, 1);
         EXPECT_TRUE(result.report.holes.empty());
         EXPECT_DOUBLE_EQ(result.report.volume, 2.0);
+    }
+}
+
+// A block of cells, the walls between them drawn once, each facing either way: they meet in lines and points.
+TEST(MeshClosing, LeavesWallsBetweenManyCellsOut) {
+    for (const std::array<int, 3>& counts : {std::array{2, 2, 1}, {3, 1, 1}, {3, 3, 1}, {2, 2, 2}, {3, 3, 3}}) {
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            SCOPED_TRACE(std::to_string(counts[0] * 100 + counts[1] * 10 + counts[2]) + ", seed " +
+                         std::to_string(seed));
+            std::mt19937_64 random(seed);
+            TriangleMesh mesh;
+            std::int64_t walls = 0;
+            const auto add_face = [&](const Point& low, int axis, bool is_up) {
+                const std::array<Point, 3> units{Point{1, 0, 0}, Point{0, 1, 0}, Point{0, 0, 1}};
+                const Point& u = units[(axis + 1) % 3];
+                const Point& v = units[(axis + 2) % 3];
+                const auto first = static_cast<Index>(mesh.vertices.size());
+                for (const Point& corner : {low, low + u, low + u + v, low + v}) {
+                    mesh.vertices.push_back(corner);
+                }
+                for (Triangle triangle : {Triangle{first, first + 1, first + 2}, {first, first + 2, first + 3}}) {
+                    if (!is_up) {
+                        turn_over(triangle);
+                    }
+                    mesh.triangles.push_back(triangle);
+                }
+            };
+            for (int axis = 0; axis < 3; ++axis) {
+                const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+                for (int level = 0; level <= counts[axis]; ++level) {
+                    for (int i = 0; i < counts[u]; ++i) {
+                        for (int j = 0; j < counts[v]; ++j) {
+                            std::array<double, 3> low{};
+                            low[axis] = level, low[u] = i, low[v] = j;
+                            const bool is_wall = level > 0 && level < counts[axis];
+                            walls += is_wall ? 2 : 0;
+                            add_face({low[0], low[1], low[2]}, axis, is_wall ? random() % 2 == 0 : level > 0);
+                        }
+                    }
+                }
+            }
+            const RepairedMesh result = closed(mesh);
+            EXPECT_EQ(result.report.wall_triangles, walls);
+            EXPECT_TRUE(result.report.holes.empty());
+            EXPECT_EQ(result.report.components, 1);
+            EXPECT_EQ(result.report.genus, 0);
+            EXPECT_NEAR(result.report.volume, counts[0] * counts[1] * counts[2], 1e-12);
+        }
+    }
+}
+
+TEST(MeshClosing, KeepsTheCavityOfASolidInsideOutWithHoles) {
+    for (const bool is_body_open : {false, true}) {
+        for (const bool is_cavity_open : {false, true}) {
+            for (const bool is_inside_out : {false, true}) {
+                SCOPED_TRACE(std::to_string(is_body_open) + std::to_string(is_cavity_open) +
+                             std::to_string(is_inside_out));
+                TriangleMesh body = test::ball_mesh(4.0, 20);
+                TriangleMesh cavity = inside_out(test::ball_mesh(2.0, 20));
+                const double volume = repaired(together({body, cavity})).report.volume;
+                body.triangles.resize(body.triangles.size() - (is_body_open ? 1 : 0));
+                cavity.triangles.resize(cavity.triangles.size() - (is_cavity_open ? 1 : 0));
+                const TriangleMesh mesh = together({body, cavity});
+                const RepairedMesh result = closed(is_inside_out ? inside_out(mesh) : mesh);
+                EXPECT_NEAR(result.report.volume, volume, 1e-9);
+                EXPECT_EQ(winding_by_solid_angle(result.mesh, {0, 0, 0.1}), 0);
+            }
+        }
+    }
+}
+
+// A few rays from each triangle: none may go to one side alone.
+TEST(MeshClosing, DoesNotTurnTrianglesThatDoNotMeet) {
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        SCOPED_TRACE("seed " + std::to_string(seed));
+        std::mt19937_64 random(seed);
+        std::uniform_real_distribution<double> step(0.0, 0.01);
+        TriangleMesh mesh = soup(cube(1.0));
+        for (Point& p : mesh.vertices) {
+            p = p + Point{step(random), step(random), step(random)};
+        }
+        std::ranges::shuffle(mesh.triangles, random);
+        EXPECT_EQ(repair(mesh).report.reversed_triangles, 0);
     }
 }
 

@@ -348,9 +348,9 @@ TEST_F(SceneIo, TurnsAndNestsTheNodesOfGltf) {
     Accessors numbers;
     const int position = numbers.add_corners();
     const std::string mesh = mesh_of(position, numbers.add_faces());
-    // A quarter turn about z, behind it a scale; above both a matrix, column by column.
+    // A quarter turn about z, of no unit length, behind it a scale; above both a matrix, column by column.
     const std::string nodes = R"({"name":"top","children":[2,1],"matrix":[1,0,0,0, 0,0,1,0, 0,-1,0,0, 10,20,30,1]},
-{"name":"b","mesh":0},{"name":"a","translation":[1,2,3],"rotation":[0,0,0.7071067811865476,0.7071067811865475],"scale":[1,2,4],"mesh":0})";
+{"name":"b","mesh":0},{"name":"a","translation":[1,2,3],"rotation":[0,0,0.7,0.7],"scale":[1,2,4],"mesh":0})";
     const MeshObjects read = read_bytes_of(numbers.file(nodes, mesh), "a.glb");
     ASSERT_EQ(read.objects.size(), 2u);
     EXPECT_EQ(read.objects[0].name, "a") << "in the order of the children";

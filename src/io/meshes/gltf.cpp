@@ -453,7 +453,8 @@ Mesh read_mesh(std::uint64_t index, Asset& asset) {
 
 Eigen::Affine3d place_of(const std::array<double, 3>& translation, const std::array<double, 4>& rotation,
                          const std::array<double, 3>& scale) {
-    const Eigen::Quaterniond turn(rotation[3], rotation[0], rotation[1], rotation[2]);
+    Eigen::Quaterniond turn(rotation[3], rotation[0], rotation[1], rotation[2]);
+    turn.normalize();  // quantized ones are not of length 1; zero stays zero
     Eigen::Affine3d result = Eigen::Affine3d::Identity();
     result.linear() = turn.toRotationMatrix() * Eigen::Vector3d(scale[0], scale[1], scale[2]).asDiagonal();
     result.translation() << translation[0], translation[1], translation[2];

@@ -6,16 +6,19 @@
 #include <cmath>
 #include <cstddef>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <queue>
 #include <span>
 #include <utility>
 
 #include "base/angles.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/grouped.hpp"
 #include "base/parallel.hpp"
 #include "base/random.hpp"
 #include "base/vectors.hpp"
+#include "solid/mesh/fast_winding.hpp"
 #include "solid/mesh/repair/orientation.hpp"
 #include "solid/mesh/repair/patch.hpp"
 #include "solid/mesh/winding.hpp"
@@ -74,8 +77,10 @@ struct Visibility {
     std::int64_t back = 0;
     std::int64_t rays = 0;  ///< that were sent
 
-    /// Is the back clearly what is seen? What is seen through small holes is little.
+    /// Is the back clearly what is seen?
     bool is_turned() const { return back > 2 * front && 20 * back > rays; }
+    bool is_unseen() const { return front + back == 0; }
+    bool is_hardly_seen() const { return 20 * (front + back) <= rays; }  ///< as through small holes
 };
 
 std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation& parts) {
@@ -106,7 +111,8 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
             const Point center = (1.0 / 3.0) * (p[u] + p[v] + p[w]);
             const Point normal = cross(p[v] - p[u], p[w] - p[u]);
             for (std::size_t k = 0; k < kDirections; ++k) {
-                const Point ray = random_unit_vector(kSeed, i, k);
+                // In pairs of opposite ones: as many from the front as from the back.
+                const Point ray = (k % 2 == 0 ? 1.0 : -1.0) * random_unit_vector(kSeed, i, k / 2);
                 bool gets_out = true;
                 for_each_crossing(bvh, center, center + 2.0 * box.diagonal() * ray,
                                   [&](Index t, const SegmentCrossing&) { gets_out &= bvh.order[t] == chosen[i]; });
@@ -131,11 +137,11 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
 // ---------------------------------------------------------------------------------------------------------------------
 
 /// Which triangles make up walls: parts without which the arrows at all of their rims cancel. Where there is a choice,
-/// as of the three parts of a body with a wall across, that which is least seen from outside goes.
+/// as of the three parts of a body with a wall across, that which is least seen from outside goes. Walls that meet
+/// cancel together only, whichever way each of them faces.
 std::vector<char> find_walls(const std::vector<Triangle>& triangles, const IndexLists& edges, const Orientation& parts,
                              const std::vector<Visibility>& seen) {
     std::vector<int> excess(edges.size(), 0);
-    std::vector<char> may_go(seen.size(), 0);
     const IndexLists rims = grouped(seen.size(), [&](const auto& add) {
         for (std::size_t e = 0; e < edges.size(); ++e) {
             if (edges[e].size() != 2) {
@@ -148,41 +154,70 @@ std::vector<char> find_walls(const std::vector<Triangle>& triangles, const Index
     for (std::size_t part = 0; part < seen.size(); ++part) {
         for (const Index e : rims[part]) {
             excess[e] = excess_of(triangles, edges[e]);
-            if (excess[e] != 0) {
-                may_go[part] = 1;
-            }
         }
     }
+    std::vector<char> is_gone(seen.size(), 0);
+    const auto arrows_of = [&](Index e, const auto& is_counted) {
+        int sum = 0;
+        for (const Index side : edges[e]) {
+            const Index part = parts.component[side / 3];
+            sum += is_gone[part] == 0 && is_counted(part) ? arrow_of(triangles, side) : 0;
+        }
+        return sum;
+    };
+    const auto leave_out = [&](Index part) {
+        is_gone[part] = 1;
+        std::ranges::for_each(rims[part], [&](Index e) { excess[e] = 0; });
+    };
+    const auto leave_out_alone = [&](Index part) {
+        const bool is_wall =
+            std::ranges::any_of(rims[part], [&](Index e) { return excess[e] != 0; }) &&
+            std::ranges::all_of(rims[part], [&](Index e) {
+                return edges[e].size() > 2 && excess[e] == arrows_of(e, [&](Index other) { return other == part; });
+            });
+        if (is_wall) {
+            leave_out(part);
+        }
+    };
+    const auto leave_out_together = [&](const std::vector<Index>& some) {
+        DisjointSets groups(seen.size());
+        std::vector<char> is_one(seen.size(), 0);
+        std::ranges::for_each(some, [&](Index part) { is_one[part] = is_gone[part] == 0 ? 1 : 0; });
+        const auto counts = [&](Index part) { return is_one[part] != 0; };
+        std::vector<char> is_wall(seen.size(), 0);
+        for (const Index part : some) {
+            for (const Index e : rims[part]) {
+                for (const Index side : edges[e]) {
+                    if (counts(part) && counts(parts.component[side / 3])) {
+                        groups.join(part, parts.component[side / 3]);
+                    }
+                }
+            }
+        }
+        for (const Index part : some) {  // is there a reason?
+            is_wall[groups.find(part)] |= std::ranges::any_of(
+                rims[part], [&](Index e) { return counts(part) && excess[e] != 0 && edges[e].size() > 2; });
+        }
+        for (const Index part : some) {
+            is_wall[groups.find(part)] &= std::ranges::all_of(
+                rims[part], [&](Index e) { return edges[e].size() > 2 && excess[e] == arrows_of(e, counts); });
+        }
+        for (const Index part : some) {
+            if (counts(part) && is_wall[groups.find(part)] != 0) {
+                leave_out(part);
+            }
+        }
+    };
     const auto by_visibility =
         sorted_indices(seen.size(), [&](Index part) { return seen[part].front + seen[part].back; });
-    std::vector<char> is_gone(seen.size(), 0);
-    for (const Index part : by_visibility) {
-        if (!may_go[part]) {
-            continue;
-        }
-        const auto own = [&](Index e) {
-            int sum = 0;
-            for (const Index side : edges[e]) {
-                sum += parts.component[side / 3] == part ? arrow_of(triangles, side) : 0;
-            }
-            return sum;
-        };
-        bool is_wall = false;
-        for (const Index e : rims[part]) {
-            const int sum = own(e);
-            is_wall |= excess[e] != 0;
-            if (excess[e] != sum || edges[e].size() < 3) {
-                is_wall = false;
-                break;
-            }
-        }
-        if (is_wall) {
-            is_gone[part] = 1;
-            for (const Index e : rims[part]) {
-                excess[e] = 0;
-            }
-        }
+    for (const auto& is_asked : {&Visibility::is_unseen, &Visibility::is_hardly_seen}) {
+        std::vector<Index> some;
+        std::ranges::copy_if(by_visibility, std::back_inserter(some),
+                             [&](Index part) { return (seen[part].*is_asked)(); });
+        std::ranges::for_each(some, leave_out_alone);
+        leave_out_together(some);
     }
+    std::ranges::for_each(by_visibility, leave_out_alone);
     std::vector<char> is_wall(triangles.size());
     for (std::size_t t = 0; t < triangles.size(); ++t) {
         is_wall[t] = is_gone[parts.component[t]];
@@ -382,23 +417,24 @@ void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
         areas[parts.component[t]] += area;
         patches[parts.component[t]] += t < patched.given ? 0.0 : area;
     }
-    const std::vector<double> volumes = component_volumes(mesh, parts);
-    std::vector<char> may_be_inner(areas.size()), is_sheet(areas.size());
-    for (std::size_t part = 0; part < areas.size(); ++part) {
-        may_be_inner[part] = patches[part] > (volumes[part] > 0.0 ? 0.0 : kMostPatch * areas[part]);
-        is_sheet[part] = patches[part] > kSheetPatch * (areas[part] - patches[part]);
-    }
-    if (areas.size() < 2 || std::ranges::count(may_be_inner, 1) == 0) {
+    if (areas.size() < 2 || std::ranges::none_of(patches, [](double area) { return area > 0.0; })) {
         return;
+    }
+    const std::vector<double> volumes = component_volumes(mesh, parts);
+    const std::vector<int> within = sides_within_others(build_bvh(mesh), mesh, parts, volumes);
+    std::vector<char> is_inside(areas.size()), is_sheet(areas.size());
+    for (std::size_t part = 0; part < areas.size(); ++part) {
+        const bool may_be_cavity = volumes[part] * within[part] < 0.0;
+        is_inside[part] = within[part] != 0 && patches[part] > (may_be_cavity ? kMostPatch * areas[part] : 0.0);
+        is_sheet[part] = patches[part] > kSheetPatch * (areas[part] - patches[part]);
     }
     if (std::ranges::count(is_sheet, 0) == 0) {
         is_sheet.assign(areas.size(), 0);  // for the whole to be judged
     }
-    const std::vector<int> within = sides_within_others(build_bvh(mesh), mesh, parts);
     std::vector<char> is_dropped(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Index part = parts.component[t];
-        const bool is_inner = may_be_inner[part] && within[part] != 0;
+        const bool is_inner = is_inside[part] != 0;
         is_dropped[t] = is_inner || is_sheet[part];
         if (is_dropped[t] && t < patched.given) {
             ++(is_inner ? closing.wall_triangles : closing.sheet_triangles);
@@ -427,6 +463,37 @@ class AnglesAround {
     Point low_, x_, y_;
 };
 
+/// Which parts face inward: those with a rim whose backs are seen, and those hardly seen around which these wind, as
+/// around the cavities of a solid that is inside out.
+std::vector<char> find_turned(const TriangleMesh& mesh, const Orientation& parts, const std::vector<Visibility>& seen,
+                              const std::vector<char>& has_rim) {
+    std::vector<char> result(seen.size());
+    for (std::size_t part = 0; part < seen.size(); ++part) {
+        result[part] = has_rim[part] != 0 && seen[part].is_turned() ? 1 : 0;
+    }
+    if (std::ranges::count(result, 1) == 0) {
+        return result;
+    }
+    TriangleMesh turned{mesh.vertices, {}};
+    std::vector<Index> first(seen.size(), kNone);  // triangle of the other parts
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        const Index part = parts.component[t];
+        if (result[part] != 0) {
+            turned.triangles.push_back(mesh.triangles[t]);
+        } else if (first[part] == kNone && (has_rim[part] == 0 || seen[part].is_hardly_seen())) {
+            first[part] = static_cast<Index>(t);
+        }
+    }
+    const Bvh bvh = build_bvh(turned);
+    const FastWinding winding(bvh);
+    for (std::size_t part = 0; part < seen.size(); ++part) {
+        if (first[part] != kNone) {
+            result[part] = winding(mesh.vertices[mesh.triangles[first[part]][0]]) < -0.5 ? 1 : 0;
+        }
+    }
+    return result;
+}
+
 }  // namespace
 
 Closing close_holes(TriangleMesh& mesh) {
@@ -442,9 +509,9 @@ Closing close_holes(TriangleMesh& mesh) {
             }
         }
     }
+    const std::vector<char> is_turned = find_turned(mesh, parts, seen, has_rim);
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-        const std::size_t part = parts.component[t];
-        if (has_rim[part] && seen[part].is_turned()) {
+        if (is_turned[parts.component[t]] != 0) {
             reverse(mesh.triangles[t]);
             ++closing.turned_triangles;
         }

@@ -83,8 +83,22 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
     return split;
 }
 
-std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation) {
+namespace {
+
+/// How often others wind around a place just inside a component: all of them, those oriented outward, and those
+/// oriented inward.
+struct Windings {
+    int all = 0;
+    int outward = 0;
+    int inward = 0;
+};
+
+}  // namespace
+
+std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation,
+                                     std::span<const double> volumes) {
     constexpr std::size_t kSamples = 8;
+    constexpr double kInside = 1e-6;  // of the diagonal: faces that lie on those of others are not beside them
     const std::vector<Index>& component = orientation.component;
     std::vector<std::size_t> size(orientation.components, 0);
     for (const Index c : component) {
@@ -98,26 +112,42 @@ std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, c
         }
     }
     const Box box = box_around(mesh.vertices);
-    const auto windings = mapped<int>(
+    const auto windings = mapped<Windings>(
         samples.size(),
         [&](std::size_t i) {
             // A corner might be where components touch.
             const auto& [u, v, w] = mesh.triangles[samples[i]];
             const Point center = (1.0 / 3.0) * (mesh.vertices[u] + mesh.vertices[v] + mesh.vertices[w]);
-            return winding_number(bvh, box, center,
-                                  [&](Index t) { return component[bvh.order[t]] != component[samples[i]]; });
+            const Point normal = cross(mesh.vertices[v] - mesh.vertices[u], mesh.vertices[w] - mesh.vertices[u]);
+            const Index own = component[samples[i]];
+            const double step = (volumes[own] < 0.0 ? 1.0 : -1.0) * kInside * box.diagonal();
+            const Point inside = squared_norm(normal) > 0.0 ? center + step * unit(normal) : center;
+            const auto of = [&](const auto& counts) {
+                return winding_number(bvh, box, inside, [&](Index t) {
+                    const Index other = component[bvh.order[t]];
+                    return other != own && counts(volumes[other]);
+                });
+            };
+            return Windings{of([](double) { return true; }), of([](double volume) { return volume > 0.0; }),
+                            of([](double volume) { return volume < 0.0; })};
         },
         std::size_t{16});
-    std::vector<int> lowest(size.size(), std::numeric_limits<int>::max());
-    std::vector<int> highest(size.size(), std::numeric_limits<int>::min());
+    std::vector<Windings> lowest(size.size(), {1, 1, 1});
+    std::vector<Windings> highest(size.size(), {-1, -1, -1});
     for (std::size_t i = 0; i < samples.size(); ++i) {
         const std::size_t c = component[samples[i]];
-        lowest[c] = std::min(lowest[c], windings[i]);
-        highest[c] = std::max(highest[c], windings[i]);
+        for (int Windings::*kind : {&Windings::all, &Windings::outward, &Windings::inward}) {
+            lowest[c].*kind = std::min(lowest[c].*kind, windings[i].*kind);
+            highest[c].*kind = std::max(highest[c].*kind, windings[i].*kind);
+        }
     }
     std::vector<int> result(size.size());
     for (std::size_t c = 0; c < result.size(); ++c) {
-        result[c] = lowest[c] > 0 ? 1 : highest[c] < 0 ? -1 : 0;
+        const bool is_inclusion = lowest[c].all > 0;
+        const bool is_cavity = volumes[c] < 0.0 && lowest[c].outward > 0 && highest[c].all > 0;
+        const bool is_inclusion_inward = highest[c].all < 0;
+        const bool is_cavity_inward = volumes[c] > 0.0 && highest[c].inward < 0 && lowest[c].all < 0;
+        result[c] = is_inclusion || is_cavity ? 1 : is_inclusion_inward || is_cavity_inward ? -1 : 0;
     }
     return result;
 }
@@ -143,7 +173,7 @@ std::int64_t turn_outward(TriangleMesh& mesh, const Orientation& orientation, co
         return 0;
     }
     std::vector<char> is_inward(volumes.size());
-    const std::vector<int> within = sides_within_others(bvh, mesh, orientation);
+    const std::vector<int> within = sides_within_others(bvh, mesh, orientation, volumes);
     for (std::size_t c = 0; c < volumes.size(); ++c) {
         is_inward[c] = within[c] < 0 || (within[c] == 0 && volumes[c] < 0.0);
     }

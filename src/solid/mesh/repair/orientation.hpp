@@ -35,8 +35,10 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
 std::vector<double> component_volumes(const TriangleMesh& mesh, const Orientation& orientation);
 
 /// For each component, does it lie within a solid that others bound? 1: yes; -1: yes, and these are oriented inward;
-/// 0: no, or only in part. \param bvh of the mesh, which is closed
-std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation);
+/// 0: no, or only in part. A cavity may touch or overlap other cavities, and lie against the boundary of the solid.
+/// \param bvh of the mesh, which is closed \param volumes of the components
+std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation,
+                                     std::span<const double> volumes);
 
 /// Turns inward-oriented components outward. A component within the solid that others bound is a cavity or an
 /// inclusion, and is turned only together with them. Returns how many were turned.
