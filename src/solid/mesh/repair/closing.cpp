@@ -434,10 +434,9 @@ void drop_sheets(TriangleMesh& mesh, Patched& patched, Closing& closing) {
     std::vector<char> is_dropped(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const Index part = parts.component[t];
-        const bool is_inner = is_inside[part] != 0;
-        is_dropped[t] = is_inner || is_sheet[part];
+        is_dropped[t] = is_inside[part] || is_sheet[part];
         if (is_dropped[t] && t < patched.given) {
-            ++(is_inner ? closing.wall_triangles : closing.sheet_triangles);
+            ++(is_inside[part] ? closing.wall_triangles : closing.sheet_triangles);
         }
     }
     std::size_t i = 0;

@@ -2,9 +2,9 @@
 #include "solid/mesh/repair/orientation.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "base/parallel.hpp"
+#include "base/vectors.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
 
@@ -85,12 +85,11 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
 
 namespace {
 
-/// How often others wind around a place just inside a component: all of them, those oriented outward, and those
-/// oriented inward.
+/// How often others wind around a place just inside a component, those oriented outward and those oriented inward.
 struct Windings {
-    int all = 0;
     int outward = 0;
     int inward = 0;
+    int all = 0;
 };
 
 }  // namespace
@@ -122,14 +121,15 @@ std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, c
             const Index own = component[samples[i]];
             const double step = (volumes[own] < 0.0 ? 1.0 : -1.0) * kInside * box.diagonal();
             const Point inside = squared_norm(normal) > 0.0 ? center + step * unit(normal) : center;
-            const auto of = [&](const auto& counts) {
+            const auto of_sign = [&](double sign) {
                 return winding_number(bvh, box, inside, [&](Index t) {
                     const Index other = component[bvh.order[t]];
-                    return other != own && counts(volumes[other]);
+                    return other != own && sign * volumes[other] > 0.0;
                 });
             };
-            return Windings{of([](double) { return true; }), of([](double volume) { return volume > 0.0; }),
-                            of([](double volume) { return volume < 0.0; })};
+            const int outward = of_sign(1.0);
+            const int inward = of_sign(-1.0);
+            return Windings{outward, inward, outward + inward};
         },
         std::size_t{16});
     std::vector<Windings> lowest(size.size(), {1, 1, 1});
