@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "base/parallel.hpp"
-#include "base/vectors.hpp"
 #include "solid/mesh/winding.hpp"
 #include "spatial/extent.hpp"
 
