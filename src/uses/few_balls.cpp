@@ -307,17 +307,19 @@ Ball around(const Ball& a, const Ball& b) {
     return {a.center + (radius - a.radius) / apart * (b.center - a.center), radius};
 }
 
+double reach(const Point& from, const Ball& ball) { return distance(from, ball.center) + ball.radius; }
+
+const Ball& farthest(std::span<const Ball> balls, const Point& from) {
+    return *std::ranges::max_element(balls, {}, [&](const Ball& ball) { return reach(from, ball); });
+}
+
 // The centre moves towards the ball that it reaches last, by less and less (M. Bădoiu, K. Clarkson, "Smaller core-sets
 // for balls", 2003): after so many steps the radius is too large by less than a few of their inverses.
-Ball around(std::span<const Ball> balls, int steps) {
-    const auto reach = [](const Point& from, const Ball& ball) { return distance(from, ball.center) + ball.radius; };
-    const auto last = [&](const Point& from) {
-        return *std::ranges::max_element(balls, {}, [&](const Ball& ball) { return reach(from, ball); });
-    };
-    Ball best{balls.front().center, reach(balls.front().center, last(balls.front().center))};
+Ball around_few(std::span<const Ball> balls, int steps) {
+    Ball best{balls.front().center, kInfinity};
     Point center = best.center;
     for (int i = 1; i <= steps; ++i) {
-        const Ball far = last(center);
+        const Ball& far = farthest(balls, center);
         const double radius = reach(center, far);
         if (radius < best.radius) {
             best = {center, radius};
@@ -330,6 +332,22 @@ Ball around(std::span<const Ball> balls, int steps) {
         center = center + (apart + far.radius) / (apart * (i + 1)) * (far.center - center);
     }
     return best;
+}
+
+// The ball around a few holds nearly all: the one that sticks out of it most joins these, until it does so by no more
+// than the steps miss.
+Ball around(std::span<const Ball> balls, int steps) {
+    std::vector<Ball> few{balls.front()};
+    while (true) {
+        Ball result = around_few(few, steps);
+        const Ball& far = farthest(balls, result.center);
+        if (reach(result.center, far) <= (1.0 + 1.0 / steps) * result.radius ||
+            std::ranges::find(few, far) != few.end()) {
+            result.radius = reach(result.center, far);
+            return result;
+        }
+        few.push_back(far);
+    }
 }
 
 // What covering balls must not exceed.
@@ -411,17 +429,14 @@ std::vector<Ball> covering(const Placement& placement, std::span<const Point> po
 // balls
 std::vector<Ball> tightened(std::vector<Ball> balls, Placement& placement, std::span<const Point> points,
                             const Solid& solid, const Limits& limits, double rounding, double error) {
-    constexpr int kRounds = 3;   // a fourth gains less than a thousandth
-    constexpr int kSteps = 200;  // the ball is off by half a percent, and is taken if it is smaller than the last one
-    const auto is_in = [](const Point& p, const Ball& ball) {
-        return squared_distance(p, ball.center) <= ball.radius * ball.radius;
+    constexpr int kRounds = 3;    // a fourth gains less than a thousandth
+    constexpr int kSteps = 1000;  // the ball is off by a thousandth, and is taken if it is smaller than the last one
+    const PointTree tree = build_point_tree(points);
+    std::vector<Index> times(points.size(), 0);  // in the order of the tree
+    const auto count = [&](const Ball& ball, Index sign) {
+        for_each_point_near(tree, ball.center, ball.radius, [&](Index i, double) { times[i] += sign; });
     };
-    std::vector<Index> times(points.size(), 0);
-    for (const Ball& ball : balls) {
-        for (std::size_t i = 0; i < points.size(); ++i) {
-            times[i] += is_in(points[i], ball) ? 1 : 0;
-        }
-    }
+    std::ranges::for_each(balls, [&](const Ball& ball) { count(ball, 1); });
     std::vector<Index> order(balls.size());
     std::iota(order.begin(), order.end(), 0);
     for (int round = 0; round < kRounds; ++round) {
@@ -430,11 +445,11 @@ std::vector<Ball> tightened(std::vector<Ball> balls, Placement& placement, std::
         for (const Index k : order) {
             stop_if_cancelled();
             std::vector<Ball> needed;
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                if (times[i] == 1 && is_in(points[i], balls[k])) {
-                    needed.push_back({points[i], 0.0});
+            for_each_point_near(tree, balls[k].center, balls[k].radius, [&](Index i, double) {
+                if (times[i] == 1) {
+                    needed.push_back({tree.points[i], 0.0});
                 }
-            }
+            });
             if (needed.empty()) {
                 continue;
             }
@@ -445,9 +460,8 @@ std::vector<Ball> tightened(std::vector<Ball> balls, Placement& placement, std::
                 smaller.radius > limits.radius(inscribed) || !solid.inside(smaller.center)) {
                 continue;
             }
-            for (std::size_t i = 0; i < points.size(); ++i) {
-                times[i] += (is_in(points[i], smaller) ? 1 : 0) - (is_in(points[i], balls[k]) ? 1 : 0);
-            }
+            count(smaller, 1);
+            count(balls[k], -1);
             balls[k] = smaller;
             placement.balls[k] = inscribed;
         }
