@@ -100,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(
     Files, DirtyMesh,
     testing::Values(DirtyFile{"boxNotManifold.obj", "axis", 1, 0}, DirtyFile{"comments.off", "axis", 1, 0},
                     DirtyFile{"empty.obj", "file.syntax"}, DirtyFile{"empty.ply", "mesh.empty"},
-                    DirtyFile{"empty.stl", "mesh.empty"}, DirtyFile{"fan3.obj", "axis", 1, 0},
+                    DirtyFile{"empty.stl", "mesh.empty"}, DirtyFile{"fan3.obj", "mesh.sheet"},
                     DirtyFile{"hourglass_ico.obj", "axis", 2, 0}, DirtyFile{"joined_tetrahedra.obj", "axis", 1, 0},
                     DirtyFile{"moebius.obj", "mesh.one_sided"}, DirtyFile{"multibody.stl", "axis", 2, 0},
                     DirtyFile{"negative_indices.obj", "axis", 1, 0}, DirtyFile{"not_convex.obj", "axis", 1, 2},

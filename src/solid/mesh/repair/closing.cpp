@@ -85,10 +85,10 @@ struct Visibility {
 
 std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation& parts) {
     constexpr std::size_t kRays = 40'000;  // in all
-    constexpr std::size_t kMostTriangles = 64, kDirections = 8;
+    constexpr std::size_t kMostTriangles = 64, kFewestDirections = 8, kMostDirections = 64;
     constexpr std::uint64_t kSeed = 1;
     const std::size_t part_count = static_cast<std::size_t>(parts.components);
-    const std::size_t share = std::clamp<std::size_t>(kRays / kDirections / part_count, 1, kMostTriangles);
+    const std::size_t share = std::clamp<std::size_t>(kRays / kFewestDirections / part_count, 1, kMostTriangles);
     std::vector<std::size_t> sizes(part_count, 0), passed(part_count, 0);
     for (const Index part : parts.component) {
         ++sizes[part];
@@ -100,6 +100,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
             chosen.push_back(static_cast<Index>(t));
         }
     }
+    const std::size_t directions = std::clamp(kRays / chosen.size(), kFewestDirections, kMostDirections);
     const Bvh bvh = build_bvh(mesh);
     const Box box = box_around(mesh.vertices);
     std::vector<Visibility> of_chosen(chosen.size());
@@ -110,7 +111,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
             const std::vector<Point>& p = mesh.vertices;
             const Point center = (1.0 / 3.0) * (p[u] + p[v] + p[w]);
             const Point normal = cross(p[v] - p[u], p[w] - p[u]);
-            for (std::size_t k = 0; k < kDirections; ++k) {
+            for (std::size_t k = 0; k < directions; ++k) {
                 // In pairs of opposite ones: as many from the front as from the back.
                 const Point ray = (k % 2 == 0 ? 1.0 : -1.0) * random_unit_vector(kSeed, i, k / 2);
                 bool gets_out = true;
@@ -127,7 +128,7 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
         Visibility& part = result[parts.component[chosen[i]]];
         part.front += of_chosen[i].front;
         part.back += of_chosen[i].back;
-        part.rays += kDirections;
+        part.rays += static_cast<std::int64_t>(directions);
     }
     return result;
 }
