@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // scaleaxis info: what is in a file.
-#include <algorithm>
 #include <filesystem>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
@@ -125,8 +123,8 @@ Description described_mesh(const fs::path& file, const InfoOptions& options, con
     std::ostringstream text;
     print_solid(text, report.fault, topology);
     description.text = objects.text + description.text + text.str();
-    std::vector<Diagnostic> warnings = read.warnings;
-    std::ranges::copy(report.warnings(), std::back_inserter(warnings));
+    std::vector<Diagnostic> warnings = report.warnings();
+    warnings.insert(warnings.begin(), read.warnings.begin(), read.warnings.end());
     description.json["warnings"] = json_of(std::span<const Diagnostic>(warnings));
     description.json["objects"] = objects.json;
     description.json["solid"] = json_of(topology);

@@ -335,8 +335,8 @@ class SideDirections {
     std::vector<std::vector<Index>> at_;
 };
 
-// Where sheets touch in a vertex alone, each gets its own: otherwise all go on to the same place, and meet in a seam
-// there.
+// Where sheets touch in a vertex of the border alone, each gets its own: otherwise all go on to the same place, and
+// meet in a seam there.
 MedialComplex with_sheets_apart(const MedialComplex& walls) {
     const IndexLists faces_at = faces_at_vertices(walls);
     MedialComplex result = vertices_of(walls);
@@ -344,7 +344,11 @@ MedialComplex with_sheets_apart(const MedialComplex& walls) {
     for (std::size_t f = 0; f < faces.size(); ++f) {
         faces[f].assign(walls.faces[f].begin(), walls.faces[f].end());
     }
+    const std::vector<std::uint8_t> is_at_border = vertices_at_borders(walls);
     for (Index v = 0; v < static_cast<Index>(walls.vertices.size()); ++v) {
+        if (is_at_border[v] == 0) {
+            continue;
+        }
         const std::span<const Index> at = faces_at[v];
         std::map<Index, Index> first_at;  // of the edges at the vertex, the first face
         DisjointSets fans(at.size());
@@ -389,15 +393,15 @@ double way_to_opposite_border(Index v, std::span<const Point> directions, std::s
 // Strips of triangles from the border to the boundary of the solid.
 void extend(Midsurface& surface, const MedialComplex& complex, const DistanceInside& distance) {
     const std::vector<BorderEdge> border = border_of(complex);
-    if (border.empty()) {
-        return;
-    }
     const SideDirections sides(complex, border);
     std::vector<Index> at;
     for (Index v = 0; v < static_cast<Index>(complex.vertices.size()); ++v) {
         if (sides.is_border(v) && complex.radii[v] > 0.0) {
             at.push_back(v);
         }
+    }
+    if (at.empty()) {
+        return;
     }
     std::vector<Point> directions(complex.vertices.size());
     for_each_index(

@@ -79,8 +79,9 @@ struct Visibility {
 
     /// Is the back clearly what is seen?
     bool is_turned() const { return back > 2 * front && 20 * back > rays; }
-    bool is_unseen() const { return front + back == 0; }
-    bool is_hardly_seen() const { return 20 * (front + back) <= rays; }  ///< as through small holes
+    std::int64_t seen() const { return front + back; }
+    bool is_unseen() const { return seen() == 0; }
+    bool is_hardly_seen() const { return 20 * seen() <= rays; }  ///< as through small holes
 };
 
 std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation& parts) {
@@ -143,20 +144,18 @@ std::vector<Visibility> visibilities(const TriangleMesh& mesh, const Orientation
 std::vector<char> find_walls(const std::vector<Triangle>& triangles, const IndexLists& edges, const Orientation& parts,
                              const std::vector<Visibility>& seen) {
     std::vector<int> excess(edges.size(), 0);
-    const IndexLists rims = grouped(seen.size(), [&](const auto& add) {
-        for (std::size_t e = 0; e < edges.size(); ++e) {
-            if (edges[e].size() != 2) {
-                for (const Index side : edges[e]) {
-                    add(parts.component[side / 3], static_cast<Index>(e));
-                }
-            }
-        }
-    });
-    for (std::size_t part = 0; part < seen.size(); ++part) {
-        for (const Index e : rims[part]) {
+    std::vector<Index> rim_edges;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        if (edges[e].size() != 2) {
+            rim_edges.push_back(static_cast<Index>(e));
             excess[e] = excess_of(triangles, edges[e]);
         }
     }
+    const IndexLists rims = grouped(seen.size(), [&](const auto& add) {
+        for (const Index e : rim_edges) {
+            std::ranges::for_each(edges[e], [&](Index side) { add(parts.component[side / 3], e); });
+        }
+    });
     std::vector<char> is_gone(seen.size(), 0);
     const auto arrows_of = [&](Index e, const auto& is_counted) {
         int sum = 0;
@@ -181,36 +180,39 @@ std::vector<char> find_walls(const std::vector<Triangle>& triangles, const Index
         }
     };
     const auto leave_out_together = [&](const std::vector<Index>& some) {
-        DisjointSets groups(seen.size());
         std::vector<char> is_one(seen.size(), 0);
         std::ranges::for_each(some, [&](Index part) { is_one[part] = is_gone[part] == 0 ? 1 : 0; });
         const auto counts = [&](Index part) { return is_one[part] != 0; };
-        std::vector<char> is_wall(seen.size(), 0);
-        for (const Index part : some) {
-            for (const Index e : rims[part]) {
-                for (const Index side : edges[e]) {
-                    if (counts(part) && counts(parts.component[side / 3])) {
-                        groups.join(part, parts.component[side / 3]);
-                    }
+        const auto first_at = [&](Index e) {
+            const auto side = std::ranges::find_if(edges[e], [&](Index s) { return counts(parts.component[s / 3]); });
+            return side == edges[e].end() ? kNone : parts.component[*side / 3];
+        };
+        DisjointSets groups(seen.size());
+        for (const Index e : rim_edges) {
+            const Index first = first_at(e);
+            for (const Index side : edges[e]) {
+                if (counts(parts.component[side / 3])) {
+                    groups.join(first, parts.component[side / 3]);
                 }
             }
         }
-        for (const Index part : some) {  // is there a reason?
-            is_wall[groups.find(part)] |= std::ranges::any_of(
-                rims[part], [&](Index e) { return counts(part) && excess[e] != 0 && edges[e].size() > 2; });
+        std::vector<char> has_excess(seen.size(), 0);
+        std::vector<char> cancels(seen.size(), 1);
+        for (const Index e : rim_edges) {
+            if (const Index first = first_at(e); first != kNone) {
+                const Index group = groups.find(first);
+                has_excess[group] |= excess[e] != 0;
+                cancels[group] &= edges[e].size() > 2 && excess[e] == arrows_of(e, counts);
+            }
         }
         for (const Index part : some) {
-            is_wall[groups.find(part)] &= std::ranges::all_of(
-                rims[part], [&](Index e) { return edges[e].size() > 2 && excess[e] == arrows_of(e, counts); });
-        }
-        for (const Index part : some) {
-            if (counts(part) && is_wall[groups.find(part)] != 0) {
+            const Index group = groups.find(part);
+            if (counts(part) && has_excess[group] != 0 && cancels[group] != 0) {
                 leave_out(part);
             }
         }
     };
-    const auto by_visibility =
-        sorted_indices(seen.size(), [&](Index part) { return seen[part].front + seen[part].back; });
+    const auto by_visibility = sorted_indices(seen.size(), [&](Index part) { return seen[part].seen(); });
     for (const auto& is_asked : {&Visibility::is_unseen, &Visibility::is_hardly_seen}) {
         std::vector<Index> some;
         std::ranges::copy_if(by_visibility, std::back_inserter(some),

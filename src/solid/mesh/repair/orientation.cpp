@@ -82,19 +82,13 @@ std::int64_t split_vertices(TriangleMesh& mesh, const std::vector<Index>& opposi
     return split;
 }
 
-namespace {
-
-/// How often others wind around a place just inside a component, those oriented outward and those oriented inward.
-struct Windings {
-    int outward = 0;
-    int inward = 0;
-    int all = 0;
-};
-
-}  // namespace
-
 std::vector<int> sides_within_others(const Bvh& bvh, const TriangleMesh& mesh, const Orientation& orientation,
                                      std::span<const double> volumes) {
+    struct Windings {     // of others around a place just inside a component
+        int outward = 0;  // those oriented outward
+        int inward = 0;   // those oriented inward
+        int all = 0;
+    };
     constexpr std::size_t kSamples = 8;
     constexpr double kInside = 1e-6;  // of the diagonal: faces that lie on those of others are not beside them
     const std::vector<Index>& component = orientation.component;
