@@ -19,7 +19,7 @@ from ._options import checked
 from ._progress import Progress, Tell, telling
 from .adapt import core_of_image
 from .data import Image
-from .errors import Cancelled, Error, UnusableInput, Warning, warn, warnings_of
+from .errors import Cancelled, Error, InvalidOption, UnusableInput, Warning, warn, warnings_of
 from .loading import InputOptions, labelled_image, loaded_of, named
 from .pipeline import DEFAULTS, AxisOptions, axes_of, axis_options, inputs_of, is_one, name_of
 from .result import Axis
@@ -165,8 +165,8 @@ def label_axes(
     return _pairs(given, name_of(image), *mask, chosen, is_one(scale), threads, progress)
 
 
-def _boxes(values: npt.NDArray[Any], margin: int) -> Iterator[tuple[Any, tuple[slice, ...]]]:
-    """The labels, ascending, and the part of the image around each."""
+def _boxes(values: npt.NDArray[Any], margin: int) -> Iterator[tuple[int, tuple[slice, ...]]]:
+    """The labels, ascending, and the part of the image around each; those of files are floats, a mask's is True."""
     places = np.nonzero(values)
     labels, numbers = np.unique(values[places], return_inverse=True)
     low, high = (np.full((len(labels), values.ndim), start) for start in (np.iinfo(np.int64).max, -1))
@@ -174,7 +174,7 @@ def _boxes(values: npt.NDArray[Any], margin: int) -> Iterator[tuple[Any, tuple[s
         np.minimum.at(low[:, axis], numbers, indices)
         np.maximum.at(high[:, axis], numbers, indices)
     for label, first, last in zip(labels.tolist(), low.tolist(), high.tolist()):
-        yield label, tuple(slice(max(0, a - margin), b + margin + 1) for a, b in zip(first, last))
+        yield int(label), tuple(slice(max(0, a - margin), b + margin + 1) for a, b in zip(first, last))
 
 
 def each_label(function: Callable[..., _Result], image: Any, /, **options: Any) -> Iterator[tuple[int, _Result]]:
@@ -182,24 +182,37 @@ def each_label(function: Callable[..., _Result], image: Any, /, **options: Any) 
 
     function: called as `function(part, labels=label, **options)` with the part of the image around the label, as an
         `Image`: `skeleton`, `midsurface`, `spheres`, `axis`, or one of your own.
-    image: as of `label_axes`, which computes several axes at once.
-    options: those of the function, and for arrays `spacing`, `origin` and `direction`.
+    image: as of `label_axes`, which computes several axes at once. `transform` is that of the whole image.
+    options: those of the function but `labels`, and for arrays `spacing`, `origin` and `direction`.
 
     A label at which the function fails is left out, with a warning, which names it like all others; if it fails at all of
     them, the first error is raised.
     """
+    if "labels" in options:
+        raise InvalidOption("each_label takes every label: to choose some, set the others to 0")
     places = {name: options.pop(name) for name in ("spacing", "origin", "direction") if name in options}
     whole = labelled_image(image, cast(InputOptions, places))
     margin = 2 + math.ceil(3.0 * max(1.0, options.get("mask_smoothing") or 0.0))  # as far as smoothing looks, or farther
     return _results(function, whole, margin, options)
 
 
+def _with_transform(result: Any, transform: npt.NDArray[np.float64]) -> Any:
+    """An axis, those of several scales, or what was made from one, with the voxels of the whole image."""
+    if isinstance(result, list):
+        return [_with_transform(one, transform) for one in result]
+    if isinstance(result, Axis):
+        return replace(result, transform=transform)
+    axis = getattr(result, "axis", None)
+    return replace(result, axis=replace(axis, transform=transform)) if isinstance(axis, Axis) else result
+
+
 def _results(
     function: Callable[..., _Result], whole: Image, margin: int, options: dict[str, Any]
 ) -> Iterator[tuple[int, _Result]]:
     values = np.asarray(whole.values)
-    if values.dtype.kind == "f" and (values != np.floor(values)).any():
+    if not values.any() or (values.dtype.kind == "f" and (values != np.floor(values)).any()):
         raise UnusableInput("the image has no labels, which are whole numbers other than 0")
+    transform = np.column_stack([np.asarray(whole.steps).T, whole.origin])
     errors: list[Error] = []
     count = 0
     for label, box in _boxes(values, margin):
@@ -210,7 +223,7 @@ def _results(
         with warnings.catch_warnings(record=True) as told:
             warnings.simplefilter("always")
             try:
-                results.append(function(part, labels=label, **options))
+                results.append(_with_transform(function(part, labels=label, **options), transform))
             except Cancelled:
                 raise
             except Error as error:

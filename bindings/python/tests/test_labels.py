@@ -273,6 +273,30 @@ def test_each_label_calls_any_function():
         dict(scaleaxis.each_label(scaleaxis.skeleton, values * 0.5))
 
 
+def test_each_label_keeps_the_voxels_of_the_image():
+    values = labelled()
+    for label, expected in scaleaxis.label_axes(values, 0.05, **PLACE):
+        for function in (scaleaxis.axis, scaleaxis.skeleton):
+            found = dict(scaleaxis.each_label(function, values, delta=0.05, **PLACE))[label]
+            axis = found if isinstance(found, scaleaxis.Axis) else found.axis
+            np.testing.assert_allclose(axis.transform, expected.transform)
+    both = dict(scaleaxis.each_label(scaleaxis.axis, values, delta=0.05, scale=[1.0, 1.1], **PLACE))
+    assert all((one.transform[:, 3] == PLACE["origin"]).all() for axes in both.values() for one in axes)
+
+
+def test_each_label_takes_masks_and_files_and_refuses_images_without_labels(tmp_path):
+    mask = np.zeros((9, 9, 9), dtype=bool)
+    mask[2:7, 2:7, 2:7] = True
+    np.save(tmp_path / "a.npy", mask * 3.0)
+    for given, label in ((mask, 1), (mask * 3.0, 3), (tmp_path / "a.npy", 3)):
+        found = list(dict(scaleaxis.each_label(scaleaxis.axis, given, delta=0.1)))
+        assert found == [label] and type(found[0]) is int
+    with pytest.raises(scaleaxis.UnusableInput, match="no labels"):
+        list(scaleaxis.each_label(scaleaxis.axis, np.zeros((9, 9, 9), dtype=int)))
+    with pytest.raises(scaleaxis.InvalidOption, match="every label"):
+        scaleaxis.each_label(scaleaxis.axis, mask, labels=1)
+
+
 def one_sheet(image, labels):
     if labels != 7:
         raise scaleaxis.UnusableInput("no wall")
