@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "scaleaxis/robot.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -104,17 +105,34 @@ std::string shortest(double value) {
     return {buffer.data(), std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr};
 }
 
-// Roll, pitch and yaw are about the fixed axes x, y and z, one after the other.
-Frame frame_of(const xml_node& collision, const std::string& where) {
-    const xml_node origin = collision.child("origin");
+// The columns of a rotation: by roll, pitch and yaw about the fixed axes x, y and z, one after the other, or, since
+// version 1.1 of URDF, a quaternion.
+std::array<Point, 3> rotation_of(const xml_node& origin, const std::string& where) {
+    if (!origin.attribute("quat_xyzw")) {
+        const auto rpy = numbers(attribute(origin, "rpy", "0 0 0"), 3, where + ": rpy");
+        const auto [cr, sr] = at_angle(rpy[0]);
+        const auto [cp, sp] = at_angle(rpy[1]);
+        const auto [cy, sy] = at_angle(rpy[2]);
+        return {Point{cy * cp, sy * cp, -sp}, Point{cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr},
+                Point{cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr}};
+    }
+    if (origin.attribute("rpy")) {
+        fail(where + " has both rpy and quat_xyzw: leave one out");
+    }
+    const auto xyzw = numbers(attribute(origin, "quat_xyzw"), 4, where + ": quat_xyzw");
+    const Eigen::Quaterniond turn(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
+    if (!(turn.norm() > 0.0)) {
+        fail(where + ": quat_xyzw should not be 0");
+    }
+    const Eigen::Matrix3d columns = turn.normalized().toRotationMatrix();
+    const auto column = [&](int k) { return Point{columns(0, k), columns(1, k), columns(2, k)}; };
+    return {column(0), column(1), column(2)};
+}
+
+Frame frame_of(const xml_node& element, const std::string& where) {
+    const xml_node origin = element.child("origin");
     const auto xyz = numbers(attribute(origin, "xyz", "0 0 0"), 3, where + ": xyz");
-    const auto rpy = numbers(attribute(origin, "rpy", "0 0 0"), 3, where + ": rpy");
-    const auto [cr, sr] = at_angle(rpy[0]);
-    const auto [cp, sp] = at_angle(rpy[1]);
-    const auto [cy, sy] = at_angle(rpy[2]);
-    return {{Point{cy * cp, sy * cp, -sp}, Point{cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr},
-             Point{cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr}},
-            {xyz[0], xyz[1], xyz[2]}};
+    return {rotation_of(origin, where), {xyz[0], xyz[1], xyz[2]}};
 }
 
 TriangleMesh box(const Point& size) {
