@@ -208,6 +208,17 @@ TEST(Walls, FindGapsBetweenPartsAndInVoids) {
     EXPECT_TRUE(walls.wall.empty());
 }
 
+TEST(Walls, HaveADirectionHoweverThinTheyAre) {
+    const Walls wall = walls_of(box_mesh({0, 0, 0}, {1, 1, 0.01}), {.min_wall = 0.3});
+    ASSERT_EQ(wall.findings.size(), 1U);
+    EXPECT_NEAR(std::abs(wall.findings[0].direction.z), 1.0, 1e-9);
+    TriangleMesh two = box_mesh({0, 0, 0}, {1, 1, 1});
+    append(two, box_mesh({1.01, 0, 0}, {2.01, 1, 1}), false);
+    const Walls gap = walls_of(two, {.min_gap = 0.2});
+    ASSERT_EQ(gap.findings.size(), 1U);
+    EXPECT_NEAR(std::abs(gap.findings[0].direction.x), 1.0, 1e-9);
+}
+
 TEST(Walls, AreTheSameForAnyNumberOfThreads) {
     const TriangleMesh part = turned(rectilinear({{{0, 1, 9, 10}, {0, 3, 3.5, 8}, {0, 3, 8}}}, [](const Point& p) {
         return p.z < 3 || is_in(p, {1, 3, 3}, {9, 3.5, 8});

@@ -459,7 +459,13 @@ class WallSearch {
     // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
     Point direction_of(const SurfaceSide& side, const Finding& finding, Index f,
                        const std::vector<Index>& vertex_findings) const {
-        const double point_size = kSmallPart * finding.limit;
+        Ball largest{{}, 0.0};
+        for (std::size_t v = 0; v < vertex_findings.size(); ++v) {
+            if (vertex_findings[v] == f && side.balls[v].radius > largest.radius) {
+                largest = side.balls[v];
+            }
+        }
+        const double point_size = kSmallPart * largest.radius;
         if (finding.ball.radius > point_size) {
             return unit(finding.contacts[1] - finding.contacts[0]);
         }
