@@ -27,11 +27,13 @@
 #include "solids.hpp"
 #include "spatial/slab.hpp"
 #include "spatial/slab_tree.hpp"
+#include "uses/uphill.hpp"
 
 namespace scaleaxis {
 namespace {
 
 using test::box_mesh;
+using test::centered_box;
 using test::complex_by_hand;
 using test::revolved_mesh;
 using test::sphere_mesh;
@@ -120,6 +122,38 @@ void expect_closed_forms(const std::vector<ClosedForm>& forms) {
         }
         scale = scale == 1.0 ? 1.1 : 1.0;
     }
+}
+
+// A cube of which only a small disc of the bottom is known, as of a cloud with holes.
+class CubeWithHoles : public Solid, public NearestPoints {
+   public:
+    using Solid::inside;
+    Box bounds() const override { return centered_box(1.0, 1.0, 1.0); }
+    void inside(std::span<const Point> points, std::span<std::uint8_t> sides) const override {
+        std::ranges::transform(points, sides.begin(), [&](const Point& p) { return bounds().contains(p) ? 1 : 0; });
+    }
+    void crossings(std::span<const Chord>, std::span<std::optional<Point>>) const override {}
+    std::vector<Point> seeds(double, std::uint64_t, const Execution&) const override { return {}; }
+    const NearestPoints* nearest_points() const override { return this; }
+    void find(std::span<const Point> points, std::span<const double> bounds,
+              std::span<std::optional<Point>> nearest) const override {
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const double from_middle = std::hypot(points[i].x, points[i].y);
+            const double part = std::min(1.0, kDisc / std::max(kDisc, from_middle));
+            const Point p{part * points[i].x, part * points[i].y, -1.0};
+            nearest[i] = distance(p, points[i]) < bounds[i] ? std::optional(p) : std::nullopt;
+        }
+    }
+
+   private:
+    static constexpr double kDisc = 0.2;
+};
+
+TEST(Uphill, DoesNotLeaveThroughHoles) {
+    const CubeWithHoles cube;
+    const Ball top = uphill(cube, {{0.0, 0.0, -0.9}, 0.1}, 0.6);
+    EXPECT_GT(top.radius, 1.0);
+    EXPECT_TRUE(cube.bounds().contains(top.center)) << top.radius;
 }
 
 TEST(Thickness, IsThatOfClosedFormsOffEdges) {

@@ -138,6 +138,9 @@ class Hill {
                                          way <= kSteps.back() * at.value);
     }
 
+    // Surfaces of points have holes, through which balls would leave and grow without end.
+    bool has_left(const Point& place) const { return !solid_.bounds().contains(place) && !solid_.inside(place); }
+
     struct Step {
         std::optional<Depth> place;  // deeper by more than the slope; nothing: there is none
         double most = 0.0;           // upper bound of the gain
@@ -205,7 +208,7 @@ Ball uphill(const Solid& solid, const Ball& start, double slope, double most, co
                 break;
             }
         }
-        if (!step.place) {
+        if (!step.place || hill.has_left(step.place->place)) {
             break;
         }
         direction = unit(step.place->place - at.place);
