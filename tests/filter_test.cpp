@@ -77,6 +77,31 @@ TEST(Filter, ByAreaAsksWholeSheets) {
     EXPECT_THROW(filter(row({0, 30}), by_area), UnusableInput) << "unknown angles";
 }
 
+TEST(Filter, ByAreaAsksWhatCreasesDivide) {
+    // Three wide sheets that meet on the z axis up to 1. Beyond, a narrow triangle is left that makes one of two of
+    // them.
+    const auto seam = [](double size, bool is_turned) {
+        const std::vector<Index> triangle = is_turned ? std::vector<Index>{1, 5, 3} : std::vector<Index>{1, 3, 5};
+        return complex_by_hand({{0, 0, 0},
+                                {0, 0, 1},
+                                {1, 0, 0},
+                                {size, 0, 1 + size},
+                                {0, 1, 0},
+                                {0, size, 1 + size},
+                                {-1, -1, 0},
+                                {-1, -1, 1}},
+                               {{0, 2, 3, 1}, {0, 6, 7, 1}, triangle, {0, 4, 5, 1}}, {kLarge, kLarge, 27.0, kLarge});
+    };
+    const FilterOptions by_area{.measure = SheetAngle::kByArea};
+    for (const bool is_turned : {false, true}) {
+        const MedialComplex whole = seam(1.0, is_turned);
+        EXPECT_EQ(whole.sheets, 2);
+        EXPECT_EQ(filter(whole, by_area).complex.faces.size(), 3U);
+        EXPECT_EQ(filter(whole, by_area).complex.sheets, 3);
+        EXPECT_EQ(filter(seam(0.01, is_turned), by_area).complex.faces.size(), 4U) << "narrower than δ";
+    }
+}
+
 // A square fin of a narrow sheet on two squares of a wide one, with the radius 1 where it hangs.
 MedialComplex fin_of_radius(double radius) {
     MedialComplex fin =

@@ -254,10 +254,13 @@ void draw_slivers_together(StageData& data, const Execution&) {
 }
 
 void filter_narrow_sheets(StageData& data, const Execution& execution) {
-    const FilterOptions options{.angle = filter_angle_of(data.options), .measure = SheetAngle::kByArea};
-    FilteredComplex wide = filtered(data.result.complex, options, execution);
+    FilteredComplex wide =
+        filtered_by_area(data.result.complex, filter_angle_of(data.options), data.given.tolerance, execution);
     data.result.complex = std::move(wide.complex);
     data.result.narrow_statistics = wide.statistics;
+    if (wide.statistics.faces_removed > 0) {
+        draw_slivers_together(data, execution);
+    }
 }
 
 void make_compact(StageData& data, const Execution& execution) {

@@ -35,9 +35,6 @@ namespace {
 
 constexpr std::string_view kCenteringStage = "centering";
 
-// Contacts that are seen at less than this angle from each other count as one. At 26 degrees envelopes are
-// off by up to a twenty-fifth more.
-const double kSamePlaneDirection = cosine_of_degrees(10.0);
 constexpr std::size_t kMostDirections = 12;
 
 // A curve is seen from a circle around it.

@@ -7,6 +7,7 @@
 #include <optional>
 #include <queue>
 #include <span>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "axis/stages/stages.hpp"
 #include "base/angles.hpp"
 #include "base/compiler.hpp"
+#include "base/disjoint_sets.hpp"
 #include "base/faults.hpp"
 #include "base/numbers.hpp"
 #include "base/parallel.hpp"
@@ -173,8 +175,9 @@ Parts find_sheets(const MedialComplex& complex) {
     return parts;
 }
 
-// The sheets with the angles that a part of their area exceeds; 0 where they have no width.
-Parts find_sheets_by_area(const MedialComplex& complex) {
+// The sheets with the angles that a part of their area exceeds; 0 where they have no width. Those that are narrower
+// than `crumb` stay: where balls are no more exact than this, creases around them may be noise, and their angles, too.
+Parts find_sheets_by_area(const MedialComplex& complex, double crumb) {
     Parts parts;
     parts.faces = faces_of_sheets(complex);
     parts.importance.resize(complex.sheets);
@@ -191,6 +194,10 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
                 box.extend(complex.vertices[v]);
             }
         }
+        if (area < crumb * box.diagonal()) {
+            parts.importance[sheet] = kInfinity;
+            return;
+        }
         if (area <= kNegligible * radius * box.diagonal()) {
             return;  // without width it says nothing: in what other sheets have left of a curve
         }
@@ -205,6 +212,32 @@ Parts find_sheets_by_area(const MedialComplex& complex) {
         }
     });
     return parts;
+}
+
+// 1 or -1: whether a face runs along an edge of its or against it.
+double way_along(const MedialComplex& complex, Index face, Index edge) {
+    const std::span<const Index> corners = complex.faces[face];
+    const auto [from, to] = complex.edges[edge];
+    const auto start = std::ranges::find(corners, from);
+    const auto next = start + 1 == corners.end() ? corners.begin() : start + 1;
+    return *next == to ? 1.0 : -1.0;
+}
+
+// Labels as sheets what creases divide, too: sheets are smooth, and where two triangles meet at an angle, a seam was
+// whose third sheet has gone. What is left of a narrow sheet there makes one of the two wide ones that it lies between.
+void label_parts_between_creases(MedialComplex& complex) {
+    const IndexLists faces_at_edge = faces_at_edges(complex);
+    DisjointSets parts(static_cast<Index>(complex.faces.size()));
+    for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
+        const std::span<const Index> faces = faces_at_edge[e];
+        if (faces.size() == 2) {
+            const double turn = dot(unit(area_vector(complex, faces[0])), unit(area_vector(complex, faces[1])));
+            if (-way_along(complex, faces[0], e) * way_along(complex, faces[1], e) * turn >= kSamePlaneDirection) {
+                parts.join(faces[0], faces[1]);
+            }
+        }
+    }
+    std::tie(complex.face_sheets, complex.sheets) = parts.numbered();
 }
 
 // The vertices that have faces of narrow sheets alone.
@@ -380,16 +413,22 @@ FilteredComplex with_statistics(MedialComplex part, const MedialComplex& complex
     return result;
 }
 
-// Asks again where what went has made one sheet of two.
-FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, const Execution& execution) {
+FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, double tolerance,
+                                 const Execution& execution) {
     const double wide = angle + kClearlyWider;
     const double cosine = cosine_of_degrees(std::min(wide, 90.0));
     MedialComplex rest = complex;
-    for (std::size_t before = rest.faces.size() + 1; rest.faces.size() < before;) {
-        before = rest.faces.size();
-        label_sheets(rest);
+    // Asks again where what went has made one sheet of two. What is narrow beyond a crease comes last, so that a
+    // sheet's few wide triangles go with it.
+    for (bool is_by_crease = false;;) {
+        const std::size_t before = rest.faces.size();
+        if (is_by_crease) {
+            label_parts_between_creases(rest);
+        } else {
+            label_sheets(rest);
+        }
         Remainder remainder(rest);
-        Parts parts = find_sheets_by_area(rest);
+        Parts parts = find_sheets_by_area(rest, is_by_crease ? tolerance : 0.0);
         const std::vector<std::uint8_t> is_narrow = on_narrow_sheets(rest, parts, wide);
         std::vector<std::uint8_t> may_go = is_narrow;
         for (const auto& [p, q] : curve_edges(rest)) {
@@ -402,6 +441,11 @@ FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, con
         remove_parts(rest, parts, wide, std::move(crests), remainder, execution);
         remove_hairs(rest, is_narrow, cosine, remainder);
         rest = complex_of(remainder, rest);
+        const bool is_same = rest.faces.size() == before;
+        if (is_same && is_by_crease) {
+            break;
+        }
+        is_by_crease = is_same;
     }
     return with_statistics(std::move(rest), complex);
 }
@@ -414,7 +458,8 @@ FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& opti
             check_angles(complex);
         }
         if (options.measure == SheetAngle::kByArea && options.angle > 0.0) {
-            FilteredComplex result = filtered_by_area(complex, options.angle, execution);
+            const double tolerance = kDefaultTolerance * box_of_balls(complex).diagonal();
+            FilteredComplex result = filtered_by_area(complex, options.angle, tolerance, execution);
             report(execution, "filter", 1.0);
             return result;
         }

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "axis/complex.hpp"
+#include "base/angles.hpp"
 #include "scaleaxis/centering.hpp"
 #include "scaleaxis/cleaning.hpp"
 #include "scaleaxis/filter.hpp"
@@ -23,6 +24,11 @@ namespace scaleaxis::inline v1 {
 /// exactly.
 inline constexpr double kClearlyWider = 0.5;
 
+/// Cosine of 10 degrees. Contacts that are seen at a smaller angle from each other count as one; at 26 degrees
+/// envelopes are off by up to a twenty-fifth more. Triangles at a smaller one count as of one sheet; where a sheet that
+/// was removed has left two as one, these turn by 15 degrees at least.
+inline const double kSamePlaneDirection = cosine_of_degrees(10.0);
+
 /// Of the diagonal: δ by default (`kDefaultDelta`), where a stage does not know it.
 inline constexpr double kDefaultTolerance = 0.01;
 
@@ -32,6 +38,11 @@ inline constexpr double kSmallLength = 1e-4;
 
 /// `filter` of such a complex.
 FilteredComplex filtered(const MedialComplex& complex, const FilterOptions& options, const Execution& execution);
+
+/// `filter` of such a complex with `SheetAngle::kByArea`. \param tolerance of its balls: parts of sheets between
+/// creases that are wider go like sheets
+FilteredComplex filtered_by_area(const MedialComplex& complex, double angle, double tolerance,
+                                 const Execution& execution);
 
 /// `clean` of such a complex.
 CleanedComplex cleaned(const MedialComplex& complex, const CleanOptions& options, const Execution& execution);
