@@ -350,6 +350,11 @@ class Image:
         """spacing, direction: in place of steps, their lengths, one or three, and their directions, a column each."""
         if steps is not None and not (spacing is None and direction is None):
             raise InvalidOption("steps have no effect beside spacing and direction: leave one of them out")
+        if np.ma.is_masked(values):
+            raise ValueError("values must not be masked: fill them first, as by values.filled(0)")
+        for name, text in (("unit", unit), ("space", space)):
+            if not isinstance(text, str):
+                raise TypeError(f"{name} must be text, not {text!r}")
         place = _arrays.place(spacing, origin, direction)
         known = place[1:] if steps is None else _arrays.floats(steps, "steps", (3,))
         if known.shape != (3, 3):

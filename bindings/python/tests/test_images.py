@@ -80,6 +80,18 @@ def test_nrrd_and_metaimage(tmp_path, kind, name, packed):
     assert expect_as_simpleitk(tmp_path / name).unit == ""
 
 
+def test_images_refuse_masked_values_and_units_that_are_no_text():
+    values = np.zeros((9, 9, 9))
+    values[2:7, 2:7, 2:7] = 1
+    masked = np.ma.masked_array(values, mask=np.indices(values.shape)[0] > 3)
+    for function in (scaleaxis.axis, scaleaxis.Image, lambda given: list(scaleaxis.label_axes(given))):
+        with pytest.raises(ValueError, match="fill them first"):
+            function(masked)
+    assert scaleaxis.axis(np.ma.masked_array(values, mask=False), 0.1).topology.components == 1
+    with pytest.raises(TypeError, match="unit must be text"):
+        scaleaxis.Image(values, unit=5)
+
+
 def test_images_of_itk_lie_where_itk_writes_them(tmp_path):
     """Left, posterior, superior, also as files of other directions."""
     import SimpleITK as itk
