@@ -217,6 +217,19 @@ TEST(FewBalls, NoneReachesThroughAPlane) {
     EXPECT_THROW(found(input, {.count = 2, .clip = {{{0.0, 0.0, 0.0}, 0.0}}}), InvalidOption);
 }
 
+TEST(FewBalls, CoverWhatIsLowAboveAPlane) {
+    // A foot of 5 × 0.5 below a column: lower than the balls grow at first.
+    const Sampled input = sampled(prism({{0, 0}, {5, 0}, {5, 0.5}, {1, 0.5}, {1, 5}, {0, 5}}, 3.0));
+    for (const Index count : {10, 16}) {
+        const FewBalls few = found(input, {.count = count, .clip = {{{0.0, 1.0, 0.0}, 0.0}}, .effort = 0.1});
+        for (const auto& [center, radius] : few.balls) {
+            EXPECT_GE(center.y - radius, -1e-9);
+        }
+        EXPECT_LT(few.statistics.error, 1.0) << count;
+        EXPECT_LT(largest_gap(input, few.balls), few.statistics.error) << count;
+    }
+}
+
 TEST(FewBalls, SoManyThatStickOutNoFarther) {
     const Sampled input = sampled(box_mesh({0.0, 0.0, 0.0}, {1.0, 1.0, 2.0}, 4));
     const std::vector<Point> points = input.solid->seeds(0.01 * input.diagonal, 99, {});

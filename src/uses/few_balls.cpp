@@ -705,6 +705,11 @@ Part part_in(std::span<const Ball> candidates, std::span<const Point> points, st
         const double height = clearance(spaces, ball.center);
         if (height > 0.0) {
             part.candidates.push_back({ball.center, std::min(ball.radius, height)});
+        } else if (ball.radius + height > 0.0 && spaces.size() == 1) {
+            // Of what is cut off below its middle the largest ball of the rest stands for it, so that low parts have
+            // one.
+            const double way = 0.5 * (ball.radius - height);
+            part.candidates.push_back({ball.center + way * spaces.front().normal, 0.5 * (ball.radius + height)});
         }
         // Of a cut the surface has no points: middles of the sections of balls stand for it.
         for (const auto& [normal, offset] : spaces) {
@@ -741,18 +746,26 @@ FewBalls search_in_part(std::span<const Ball> candidates, std::span<const Point>
         margin = std::min(
             margin, search_and_finish(whole.candidates, whole.points, part, greedy, {}, execution).statistics.error);
     }
-    Part part = whole;
-    for (; margin > 0.0; margin = margin > kFileRounding * solid.bounds().diagonal() ? 0.5 * margin : 0.0) {
-        part = part_in(candidates, points, options.clip, margin);
-        if (!part.candidates.empty() && !part.points.empty()) {
-            break;
+    const double least_margin = kFileRounding * solid.bounds().diagonal();
+    for (;; margin = margin > least_margin ? 0.5 * margin : 0.0) {
+        const Part part = margin > 0.0 ? part_in(candidates, points, options.clip, margin) : whole;
+        if (part.candidates.empty() || part.points.empty()) {
+            continue;
         }
-        part = whole;
+        std::vector<HalfSpace> nearer = options.clip;
+        std::ranges::for_each(nearer, [&](HalfSpace& space) { space.offset += margin; });
+        FewBalls result = search_and_finish(part.candidates, part.points, ClippedSolid(solid, nearer), options,
+                                            part.beside, execution);
+        // The balls may have grown by less than the margin, and have left out what is farther from the planes.
+        const BallTree tree = build_ball_tree(result.balls);
+        const bool has_missed = std::ranges::any_of(part.beside, [&](const Point& p) {
+            return clearance(options.clip, p) > result.statistics.error &&
+                   nearest_ball(tree, p).distance > least_margin;
+        });
+        if (!has_missed) {
+            return result;
+        }
     }
-    std::vector<HalfSpace> nearer = options.clip;
-    std::ranges::for_each(nearer, [&](HalfSpace& space) { space.offset += margin; });
-    return search_and_finish(part.candidates, part.points, ClippedSolid(solid, nearer), options, part.beside,
-                             execution);
 }
 
 double greedy_error(const Sharer& sharer, Index count, FewBallsOptions options, const Execution& execution) {
