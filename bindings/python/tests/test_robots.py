@@ -102,23 +102,27 @@ def test_boxes_have_positive_sizes(tmp_path):
         scaleaxis.robot_spheres(file, 1)
 
 
-def test_quaternions_turn_as_roll_pitch_and_yaw_do(tmp_path):
+def test_origins_turn_by_angles_or_by_quaternions(tmp_path):
     file = tmp_path / "turned.urdf"
 
-    def robot(origin):
+    def balls_of(origin):
         box = f'<collision><origin {origin}/><geometry><box size="1 2 4"/></geometry></collision>'
         file.write_text(f'<robot name="r"><link name="a">{box}</link></robot>')
         return scaleaxis.robot_spheres(file, 4).balls["a"]
 
-    turned = robot('xyz="1 2 3" quat_xyzw="0.3 0.4 0.5 0.8"')
     x, y, z, w = np.array([0.3, 0.4, 0.5, 0.8]) / np.linalg.norm([0.3, 0.4, 0.5, 0.8])
     roll = np.arctan2(2 * (w * x + y * z), 1 - 2 * (x * x + y * y))
     pitch = np.arcsin(2 * (w * y - z * x))
     yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-    np.testing.assert_allclose(turned, robot(f'xyz="1 2 3" rpy="{roll} {pitch} {yaw}"'), atol=1e-6)
-    for origin, fault in (('quat_xyzw="0 0 0 0"', "should not be 0"), ('rpy="0 0 1" quat_xyzw="0 0 0 1"', "leave one out")):
+    across = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+    turn = np.eye(3) + 2 * w * across + 2 * across @ across
+    for origin in ('quat_xyzw="0.3 0.4 0.5 0.8"', f'rpy="{roll} {pitch} {yaw}"'):
+        in_box = (balls_of(f'xyz="1 2 3" {origin}')[:, :3] - [1, 2, 3]) @ turn
+        assert (np.abs(in_box) < [0.5, 1.0, 2.0]).all() and np.ptp(in_box[:, 2]) > 2.0
+    faults = {'quat_xyzw="0 0 0 0"': "should not be 0", 'rpy="0 0 1" quat_xyzw="0 0 0 1"': "leave one out"}
+    for origin, fault in faults.items():
         with pytest.raises(scaleaxis.FileError, match=fault):
-            robot(origin)
+            balls_of(origin)
 
 
 def test_pinocchio_reads_the_description(gripper, tmp_path):
