@@ -226,6 +226,12 @@ Point center_of_face(const MedialComplex& complex, Index face) {
 
 double face_area(const MedialComplex& complex, Index face) { return norm(area_vector(complex, face)); }
 
+Point inward(const MedialComplex& complex, Index face, Index edge) {
+    const Point& from = complex.vertices[complex.edges[edge][0]];
+    const Point in = cross(area_vector(complex, face), complex.vertices[complex.edges[edge][1]] - from);
+    return dot(in, center_of_face(complex, face) - from) < 0.0 ? -1.0 * in : in;
+}
+
 // The squared radius is ρ² + (t - t₀)² at position t of the edge, so the radii at both ends give the circle.
 CurveSize curve_size(const MedialComplex& complex, const std::array<Index, 2>& edge) {
     const double length = distance(complex.vertices[edge[0]], complex.vertices[edge[1]]);

@@ -78,6 +78,9 @@ double face_area(const MedialComplex& complex, Index face);
 /// The mean of the corners.
 Point center_of_face(const MedialComplex& complex, Index face);
 
+/// Along a face, normal to one of its edges, into the face; of length 0 where it has no area.
+Point inward(const MedialComplex& complex, Index face, Index edge);
+
 double segment_distance(const Point& p, const Point& a, const Point& b);
 
 inline bool is_on_sharp_edge(const MedialComplex& complex, std::size_t v) {

@@ -584,14 +584,8 @@ std::vector<std::array<Index, 2>> edges_around_ends(const MedialComplex& complex
         });
     };
     const auto is_turn = [&](Index seam, Index f, Index g) {
-        const Point& from = complex.vertices[complex.edges[seam][0]];
-        const Point along = complex.vertices[complex.edges[seam][1]] - from;
-        const auto inward = [&](Index face) {
-            const Point in = cross(area_vector(complex, face), along);
-            return dot(in, center_of_face(complex, face) - from) < 0.0 ? -1.0 * in : in;
-        };
-        const Point a = inward(f);
-        const Point b = inward(g);
+        const Point a = inward(complex, f, seam);
+        const Point b = inward(complex, g, seam);
         return dot(a, b) > kTurn * norm(a) * norm(b);
     };
     std::vector<std::pair<double, std::array<Index, 2>>> found;

@@ -214,15 +214,6 @@ Parts find_sheets_by_area(const MedialComplex& complex, double crumb) {
     return parts;
 }
 
-// 1 or -1: whether a face runs along an edge of its or against it.
-double way_along(const MedialComplex& complex, Index face, Index edge) {
-    const std::span<const Index> corners = complex.faces[face];
-    const auto [from, to] = complex.edges[edge];
-    const auto start = std::ranges::find(corners, from);
-    const auto next = start + 1 == corners.end() ? corners.begin() : start + 1;
-    return *next == to ? 1.0 : -1.0;
-}
-
 // Labels as sheets what creases divide, too: sheets are smooth, and where two triangles meet at an angle, a seam was
 // whose third sheet has gone. What is left of a narrow sheet there makes one of the two wide ones that it lies between.
 void label_parts_between_creases(MedialComplex& complex) {
@@ -231,8 +222,9 @@ void label_parts_between_creases(MedialComplex& complex) {
     for (Index e = 0; e < static_cast<Index>(complex.edges.size()); ++e) {
         const std::span<const Index> faces = faces_at_edge[e];
         if (faces.size() == 2) {
-            const double turn = dot(unit(area_vector(complex, faces[0])), unit(area_vector(complex, faces[1])));
-            if (-way_along(complex, faces[0], e) * way_along(complex, faces[1], e) * turn >= kSamePlaneDirection) {
+            const Point a = inward(complex, faces[0], e);
+            const Point b = inward(complex, faces[1], e);
+            if (dot(a, b) < -kSamePlaneDirection * norm(a) * norm(b)) {
                 parts.join(faces[0], faces[1]);
             }
         }
