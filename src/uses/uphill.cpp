@@ -112,7 +112,7 @@ class Hill {
    public:
     // In an edge whose slope is the limit itself balls stay.
     Hill(const Solid& solid, double slope)
-        : solid_(solid), slope_(slope + kFileRounding), diagonal_(solid.bounds().diagonal()) {}
+        : solid_(solid), slope_(slope + kFileRounding), bounds_(solid.bounds()), diagonal_(bounds_.diagonal()) {}
 
     double first_step() const { return kFirstStep * diagonal_; }
 
@@ -139,7 +139,7 @@ class Hill {
     }
 
     // Surfaces of points have holes, through which balls would leave and grow without end.
-    bool has_left(const Point& place) const { return !solid_.bounds().contains(place) && !solid_.inside(place); }
+    bool has_left(const Point& place) const { return !bounds_.contains(place) && !solid_.inside(place); }
 
     struct Step {
         std::optional<Depth> place;  // deeper by more than the slope; nothing: there is none
@@ -187,6 +187,7 @@ class Hill {
 
     const Solid& solid_;
     double slope_;
+    Box bounds_;
     double diagonal_;
 };
 

@@ -413,6 +413,12 @@ class WallSearch {
              lowest_vertices(side, is_thick ? -1.0 : 1.0, 0.0, [&](Index v) { return vertex_findings[v] != kNone; })) {
             starts[vertex_findings[v]].push_back(v);
         }
+        std::vector<double> largest(findings.size(), 0.0);  // radius
+        for (std::size_t v = 0; v < vertex_findings.size(); ++v) {
+            if (const Index f = vertex_findings[v]; f != kNone) {
+                largest[f] = std::max(largest[f], side.balls[v].radius);
+            }
+        }
         for_each_index(
             findings.size(),
             [&](std::size_t f) {
@@ -421,7 +427,8 @@ class WallSearch {
                                         : smallest_ball(side, chosen_starts(side, starts[f]));
                 finding.value = 2.0 * finding.ball.radius;
                 finding.contacts = opposite_contacts(side.solid, finding.ball);
-                finding.direction = direction_of(side, finding, static_cast<Index>(f), vertex_findings);
+                finding.direction =
+                    direction_of(side, finding, kSmallPart * largest[f], static_cast<Index>(f), vertex_findings);
                 for (const Point& contact : finding.contacts) {
                     finding.extent.extend(contact);
                 }
@@ -457,15 +464,8 @@ class WallSearch {
     }
 
     // Across a wall; on a sharp edge, where its ball is a point, across what is beside.
-    Point direction_of(const SurfaceSide& side, const Finding& finding, Index f,
+    Point direction_of(const SurfaceSide& side, const Finding& finding, double point_size, Index f,
                        const std::vector<Index>& vertex_findings) const {
-        Ball largest{{}, 0.0};
-        for (std::size_t v = 0; v < vertex_findings.size(); ++v) {
-            if (vertex_findings[v] == f && side.balls[v].radius > largest.radius) {
-                largest = side.balls[v];
-            }
-        }
-        const double point_size = kSmallPart * largest.radius;
         if (finding.ball.radius > point_size) {
             return unit(finding.contacts[1] - finding.contacts[0]);
         }
