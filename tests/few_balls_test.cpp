@@ -220,12 +220,17 @@ TEST(FewBalls, NoneReachesThroughAPlane) {
 TEST(FewBalls, CoverWhatIsLowAboveAPlane) {
     // A foot of 5 × 0.5 below a column: lower than the balls grow at first.
     const Sampled input = sampled(prism({{0, 0}, {5, 0}, {5, 0.5}, {1, 0.5}, {1, 5}, {0, 5}}, 3.0));
-    for (const Index count : {10, 16}) {
-        const FewBalls few = found(input, {.count = count, .clip = {{{0.0, 1.0, 0.0}, 0.0}}, .effort = 0.1});
+    const HalfSpace floor{{0.0, 1.0, 0.0}, 0.0};
+    const HalfSpace wall{{0.0, 0.0, 1.0}, 0.0};
+    for (const auto& [count, planes] :
+         {std::pair(Index{10}, std::vector{floor}), std::pair(Index{16}, std::vector{floor}),
+          std::pair(Index{16}, std::vector{floor, wall})}) {
+        const FewBalls few = found(input, {.count = count, .clip = planes, .effort = 0.1});
         for (const auto& [center, radius] : few.balls) {
             EXPECT_GE(center.y - radius, -1e-9);
+            EXPECT_TRUE(planes.size() == 1 || center.z - radius >= -1e-9);
         }
-        EXPECT_LT(few.statistics.error, 1.0) << count;
+        EXPECT_LT(few.statistics.error, 1.0) << count << ' ' << planes.size();
         EXPECT_LT(largest_gap(input, few.balls), few.statistics.error) << count;
     }
 }

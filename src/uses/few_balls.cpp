@@ -705,11 +705,15 @@ Part part_in(std::span<const Ball> candidates, std::span<const Point> points, st
         const double height = clearance(spaces, ball.center);
         if (height > 0.0) {
             part.candidates.push_back({ball.center, std::min(ball.radius, height)});
-        } else if (ball.radius + height > 0.0 && spaces.size() == 1) {
-            // Of what is cut off below its middle the largest ball of the rest stands for it, so that low parts have
-            // one.
-            const double way = 0.5 * (ball.radius - height);
-            part.candidates.push_back({ball.center + way * spaces.front().normal, 0.5 * (ball.radius + height)});
+        } else if (ball.radius + height > 0.0) {
+            // What is cut off below its middle has the largest ball of the rest, so that low parts have one.
+            const auto lowest = std::ranges::min_element(
+                spaces, {}, [&](const HalfSpace& space) { return dot(space.normal, ball.center) - space.offset; });
+            const Point center = ball.center + 0.5 * (ball.radius - height) * lowest->normal;
+            const double radius = std::min(0.5 * (ball.radius + height), clearance(spaces, center));
+            if (radius > 0.0) {
+                part.candidates.push_back({center, radius});
+            }
         }
         // Of a cut the surface has no points: middles of the sections of balls stand for it.
         for (const auto& [normal, offset] : spaces) {
