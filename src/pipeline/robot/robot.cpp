@@ -120,11 +120,11 @@ std::array<Point, 3> rotation_of(const xml_node& origin, const std::string& wher
         fail(where + " has both rpy and quat_xyzw: leave one out");
     }
     const auto xyzw = numbers(attribute(origin, "quat_xyzw"), 4, where + ": quat_xyzw");
-    const Eigen::Quaterniond turn(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-    if (!(turn.norm() > 0.0)) {
+    const Eigen::Vector4d given(xyzw[0], xyzw[1], xyzw[2], xyzw[3]);
+    if (given.isZero(0.0)) {
         fail(where + ": quat_xyzw should not be 0");
     }
-    const Eigen::Matrix3d columns = turn.normalized().toRotationMatrix();
+    const Eigen::Matrix3d columns = Eigen::Quaterniond(Eigen::Vector4d(given.stableNormalized())).toRotationMatrix();
     const auto column = [&](int k) { return Point{columns(0, k), columns(1, k), columns(2, k)}; };
     return {column(0), column(1), column(2)};
 }
