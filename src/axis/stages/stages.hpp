@@ -25,8 +25,8 @@ namespace scaleaxis::inline v1 {
 inline constexpr double kClearlyWider = 0.5;
 
 /// Cosine of 10 degrees. Contacts that are seen at a smaller angle from each other count as one; at 26 degrees
-/// envelopes are off by up to a twenty-fifth more. Triangles that meet at a larger one lie on both sides of a crease; at
-/// 20 degrees only 10 or 11 of the 12 sheets of a truncated cube come apart, whose creases have 40.
+/// envelopes are off by up to a twenty-fifth more. Triangles that meet at a larger one lie on both sides of a crease;
+/// at 20 degrees only 10 or 11 of the 12 sheets of a truncated cube come apart, whose creases have 40.
 inline const double kSamePlaneDirection = cosine_of_degrees(10.0);
 
 /// Of the diagonal: δ by default (`kDefaultDelta`), where a stage does not know it.
